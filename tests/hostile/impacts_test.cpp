@@ -1,4 +1,4 @@
-// Balls that bounce by events until their impacts accumulate: no ball falls through the floor.
+// Balls that bounce by events until their impacts accumulate, and balls on an elastic floor: no ball falls through.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -99,6 +99,66 @@ TEST(Impacts, ABallNeverFallsThroughAFloorOfEvents) {
   expect_bounces(DormandPrince<>{}, e, h, 1e-6);
   // a multistep method restarts with short steps after each resting contact of the ball
   expect_bounces(AdamsBashforthMoulton<>{.relative_tolerance = 1e-5, .absolute_tolerance = 1e-5}, e, h, 1e-2);
+}
+
+struct Counted {
+  int runs = 0, refused = 0, warned = 0;
+};
+
+/// Drops a ball from 1 m on an elastic floor with the coefficient of restitution e (0: ten times the critical damping).
+/// The run lasts 10 s. It ends in a refusal, it warns, or the ball stays above the depth at which the floor alone
+/// stores the energy of the fall, ½ k d² = m g (1 m + d), and below 1 m.
+template <class I>
+void drop_on_contact(I const& integrator, double e, double step, Counted& count) {
+  SCOPED_TRACE(std::string(I::name) + ", e = " + number(e) + ", step " + number(step));
+  constexpr double stiffness = 1e5, mass = 1.0, weight = mass * g, height = 1.0;
+  double const depth = (weight + std::sqrt(weight * weight + 2.0 * stiffness * weight * height)) / stiffness;
+  auto const floor = e > 0.0 ? SpringDamperContact::with_restitution(stiffness, mass, e)
+                             : SpringDamperContact{.stiffness = stiffness, .damping = 20.0 * std::sqrt(stiffness)};
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Contact<SphereOnPlane>>> model{Gravity{0, 0, -g}};
+  auto const ball = model.add(Rigid<>(mass, Mat3::Identity() * 1e-3, Placement::at({0, 0, height})), "ball");
+  model.apply(Contact<SphereOnPlane>{.geometry = {.radius = 0.0}, .normal = floor}, ball.at(Vec3(0, 0, 0)),
+              model.ground().at({0, 0, 0}), "floor");
+  State x = model.reference_state();
+  double lowest = height, highest = height;
+  ++count.runs;
+  try {
+    auto run = simulate(model, x, integrator, {.end_time = 10.0, .step = step, .max_step = step});
+    for (State const& now : run) {
+      lowest = std::min(lowest, now.q[2]);
+      highest = std::max(highest, now.q[2]);
+    }
+    if (!run.report().warnings.empty()) {
+      ++count.warned;
+      return;
+    }
+  } catch (Error const&) {
+    ++count.refused;
+    return;
+  }
+  EXPECT_GE(lowest, -1.05 * depth);
+  EXPECT_LE(highest, 1.1 * height);
+}
+
+TEST(Impacts, ABallNeverFallsThroughAFloorOfContact) {
+  Counted count;
+  for (double const e :
+       all() ? std::vector<double>{0.0, 0.05, 0.1, 0.3, 0.5, 0.8, 0.9, 0.95, 1.0} : std::vector<double>{0.0, 0.5, 1.0})
+    for (double const h : all() ? std::vector<double>{3e-2, 1e-2, 3e-3, 1e-3, 3e-4} : std::vector<double>{1e-2, 1e-3}) {
+      drop_on_contact(GeneralisedAlpha{}, e, h, count);
+      drop_on_contact(HhtAlpha{}, e, h, count);
+      drop_on_contact(Newmark{}, e, h, count);
+      drop_on_contact(Trapezoidal{}, e, h, count);
+      drop_on_contact(Radau{}, e, h, count);
+      drop_on_contact(Rattle{}, e, h, count);
+      drop_on_contact(RungeKutta4<>{}, e, h, count);
+      drop_on_contact(CentralDifference<>{}, e, h, count);
+      drop_on_contact(SymplecticEuler{}, e, h, count);
+      drop_on_contact(DormandPrince<>{}, e, h, count);
+      drop_on_contact(AdamsBashforthMoulton<>{}, e, h, count);
+    }
+  std::cout << count.runs << " runs, " << count.refused << " refused, " << count.warned << " with a warning\n";
+  EXPECT_LT(count.refused + count.warned, count.runs);
 }
 
 }  // namespace impacts_test

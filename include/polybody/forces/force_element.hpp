@@ -91,6 +91,15 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
   { force.potential(frames, t) } -> std::convertible_to<double>;
 };
 
+/// Force element with first-order states z that stores energy: its potential energy [J], a function of frames, z and
+/// time, and the power −∂V/∂z · ż that its states dissipate [W].
+template <class F>
+concept HasStatePotential = HasStates<F> && requires(F const force, std::array<Frame<double>, F::markers> const frames,
+                                                     std::array<double, states_of<F>()> const z, double t) {
+  { force.potential(frames, z, t) } -> std::convertible_to<double>;
+  { force.dissipation(frames, z, t) } -> std::convertible_to<double>;
+};
+
 namespace detail {
 
 /// Dual number of `value` with the derivative `slope` in direction i.

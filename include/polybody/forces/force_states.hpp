@@ -21,6 +21,16 @@ struct AtStates {
   std::array<Wrench<U>, F::markers> wrenches(std::array<Frame<U>, F::markers> const& frames, double t) const {
     return force.template wrenches<U>(frames, z, t);
   }
+  double potential(std::array<Frame<double>, F::markers> const& frames, double t) const
+    requires(HasStatePotential<F> && std::same_as<T, double>)
+  {
+    return force.potential(frames, z, t);
+  }
+  double dissipation(std::array<Frame<double>, F::markers> const& frames, double t) const
+    requires(HasStatePotential<F> && std::same_as<T, double>)
+  {
+    return force.dissipation(frames, z, t);
+  }
 };
 
 /// Factors of the derivatives with respect to poses, twists and states.

@@ -37,6 +37,16 @@ struct MaxwellElement {
     Vec<T, 3> const d = frames[1].r - frames[0].r;
     return {tension(length(d), z[0]) / damping.value};
   }
+  /// Energy of the spring, ½ k (l − l₀ − z)² [J].
+  double potential(std::array<Frame<double>, 2> const& frames, std::array<double, 1> const& z, double) const {
+    double const pull = tension(length<double>(frames[1].r - frames[0].r), z[0]);
+    return 0.5 * pull * pull / stiffness;
+  }
+  /// Power lost in the damper, N²/c [W].
+  double dissipation(std::array<Frame<double>, 2> const& frames, std::array<double, 1> const& z, double) const {
+    double const pull = tension(length<double>(frames[1].r - frames[0].r), z[0]);
+    return pull * pull / damping;
+  }
 
  private:
   template <StateScalar T>

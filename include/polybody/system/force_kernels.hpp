@@ -90,7 +90,7 @@ void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double 
 template <class F>
 constexpr bool stores() {
   if constexpr (HasStates<F>)
-    return false;
+    return HasStatePotential<F>;
   else if constexpr (ForceGroup<F>)
     return requires { requires F::all_laws_store; };
   else
@@ -105,8 +105,8 @@ double potential_of(L const& law, std::array<Index, L::markers> const& at, doubl
 }
 
 /// Adds the power of the wrenches to p. If the law has a potential, the wrenches at zero velocity change the stored
-/// energy, and the remaining part of the wrenches dissipates energy. The potential is assumed to depend on the frames
-/// only. If the law has no potential, its power is counted as power of loads.
+/// energy, and the remaining part of the wrenches dissipates energy, as do the states of the element. The potential is
+/// assumed to depend on frames and states only. If the law has no potential, its power is counted as power of loads.
 template <class L>
 void add_power(L const& law, std::array<Index, L::markers> const& at, double t, double scale, Data<double> const& data,
                Powers& p) {
@@ -116,6 +116,7 @@ void add_power(L const& law, std::array<Index, L::markers> const& at, double t, 
     auto at_rest = frames;
     for (Frame<double>& f : at_rest) f.v = f.w = Vec3::Zero();
     p.dissipated += scale * (power_of(law.template wrenches<double>(at_rest, t), frames) - power);
+    if constexpr (requires { law.dissipation(frames, t); }) p.dissipated += scale * law.dissipation(frames, t);
   } else {
     p.loads += scale * power;
   }
@@ -178,6 +179,14 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
     if constexpr (requires(Frame<double> const(&f)[2]) { e.force.passes(f, f); })
       out.forces.back().passes = [](void const* force, Frame<double> const(&from)[2], Frame<double> const(&to)[2]) {
         return static_cast<F const*>(force)->passes(from, to);
+      };
+    if constexpr (HasStatePotential<F>)
+      out.forces.back().dissipation = [](ForceLayout const& of, double time, Data<double> const& data) {
+        std::array<Index, F::markers> at;
+        std::copy_n(of.markers.begin(), at.size(), at.begin());
+        std::array<double, F::states> z;
+        std::copy_n(data.states.begin() + (of.v0 - data.first_state), z.size(), z.begin());
+        return double(static_cast<F const*>(of.force)->dissipation(detail::frames_at(at, data), z, time));
       };
     if constexpr (requires { e.force.law; }) detail::add_breakpoints(e.force.law, out.breakpoints);
   }

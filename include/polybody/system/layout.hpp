@@ -15,6 +15,7 @@
 #include <polybody/math/errors.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/time_functions.hpp>
+#include <polybody/system/data.hpp>
 
 namespace polybody {
 
@@ -182,6 +183,8 @@ struct ForceLayout {
   /// For a contact of two markers a and b: true if they are in contact between the frames `from` [a, b] and `to` [a,
   /// b], but not at either end of the step. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
+  /// Power that its first-order states dissipate at time t [W]. Null for forces without `HasStatePotential`.
+  double (*dissipation)(ForceLayout const& of, double t, Data<double> const& data) = nullptr;
 };
 
 /// Sizes of a model, and positions and names of its bodies, joints and forces.

@@ -19,8 +19,7 @@ namespace polybody {
 struct PlausibilityLimits {
   double violation = 0.1;  ///< limit of |Φ| per constraint equation, relative to max(1, extent of the markers in m) [1]
   double energy = 1.0;     ///< limit of the unexplained energy of a step, relative to S (`PlausibilityCheck`) [1]
-  double warning =
-      0.05;  ///< unexplained energy that causes a warning at the end of a run, relative to `Unexplained::scale` [1]
+  double warning = 0.05;   ///< unexplained energy that causes a warning, relative to `Unexplained::scale` [1]
 };
 
 /// Energy change of a run that its work does not explain.
@@ -31,24 +30,23 @@ struct Unexplained {
   double scale = 0.0;   ///< largest S of `PlausibilityCheck` so far, with 10⁻³ V₀⁺ and the round-off [J]
   bool known = false;   ///< true if an energy balance was evaluated
   long halved = 0;      ///< number of steps that were halved for their energy gain
+  double peak = 0.0;    ///< largest gain, less its error, at a balance during the run [J]
 };
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
 ///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W.
 /// V₀⁺ is the energy stored at the start, without gravity. W is the work input of forces without a potential, of drives
 /// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find only half
-/// of the work of a force that is switched on within a step. The balance is evaluated each time the velocities have
-/// doubled. Other steps evaluate only a sum of squares and the powers in W. Only a gain is refused, so dissipation is
-/// not counted. At the end of a run and before each restart, `settle` evaluates the balance with signed work. It counts
-/// losses if no part of the model dissipates energy. Models with a potential that depends on time have no energy
-/// balance, and their energy is not checked.
+/// of the work of a force that is switched on within a step. The balance is evaluated each time Σ v² has grown by a
+/// tenth. Only a gain is refused, so dissipation is not counted. At the end of a run and before each restart, `settle`
+/// evaluates the balance with signed work. It counts losses if no part of the model dissipates energy. Models with a
+/// potential that depends on time have no energy balance.
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
 /// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
 /// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
-/// step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by 3 % of the largest
-/// T or more, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of slow, heavy
-/// bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of the run.
+/// step would remove their energy. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. Σ v² has
+/// mixed units, so it can miss a jump of slow, heavy bodies beside fast ones; the other balances find it.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -80,6 +78,7 @@ class PlausibilityCheck {
     Trend trend;            ///< course of Σ v²
     double gained = 0.0;    ///< unexplained energy at the last balance [J]
     double doubt = 0.0;     ///< estimated error of the work at the last balance [J]
+    double most = 0.0;      ///< largest unexplained gain, less its error, at a balance since the start [J]
     Energy start;           ///< E₀
     double began = 0.0;     ///< time of the start [s]
     Unexplained settled;    ///< sum of the earlier balances of the run
@@ -237,8 +236,8 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   if (has_energy) account_.start = system.operations().energy(system.at(), data);
   account_.began = place.t;
   account_.fastest = squares(place.v);
-  account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
-  account_.scale = account_.moved = account_.gained = account_.doubt = 0.0;
+  account_.judged = account_.energy < never ? 1.1 * account_.fastest : never;
+  account_.scale = account_.moved = account_.gained = account_.doubt = account_.most = 0.0;
   account_.trend = {.last = account_.fastest, .peak = account_.fastest};
   violations_.clear();
   contacts_.clear();
@@ -259,7 +258,7 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
   for (std::size_t i = 0; i < layout.forces.size(); ++i) {
     ForceLayout const& force = layout.forces[i];
-    lossless_ = lossless_ && (!force.stores || force.lossless);
+    lossless_ = lossless_ && (!force.stores || force.lossless || force.dissipation);
     if (!force.passes) continue;
     contacts_.push_back({i, {}, {}, place.t});
     read_frames(system, force, contacts_.back().last);
@@ -292,9 +291,10 @@ void PlausibilityCheck::check_step(System& system, StepResult const& end, double
   system.evaluate(end.q, end.v, end.t);
   if (any_open()) refuse_open(system, end.t);
   if (!(squares > account_.judged)) return;
-  (void)check_energy(system, end);
+  Unexplained const found = check_energy(system, end);
+  if (end.t - account_.began > 4.5 * end.h) account_.most = std::max(account_.most, found.energy - found.doubt);
   account_.fastest = squares;
-  account_.judged = 4.0 * squares;
+  account_.judged = 1.1 * squares;
 }
 
 template <class>
@@ -387,11 +387,11 @@ Unexplained PlausibilityCheck::settle(System& system, StepResult const& end) {
   system.evaluate(end.q, end.v, end.t);
   Unexplained const last = check_energy(system, end);
   double const fastest = std::sqrt(std::max(account_.fastest, squares(end.v)));
-  bool const moves = fastest * (end.t - account_.began) > 1e-6 * (1.0 + largest_size(end.q));
-  if (!last.known || !moves) return sum;
+  if (!last.known || fastest * (end.t - account_.began) <= 1e-6 * (1.0 + largest_size(end.q))) return sum;
   sum.energy += lossless_ ? last.energy : std::max(0.0, last.energy);
   sum.doubt += last.doubt;
   sum.worst = std::max(sum.worst, last.worst);
+  sum.peak = std::max(sum.peak, account_.most);
   sum.scale = std::max(sum.scale, last.scale);
   sum.known = true;
   return sum;

@@ -67,7 +67,8 @@ struct StepResult {
 /// due to such an element therefore remains unexplained. Both quadratures have an error of O(h²). The error of the
 /// quadrature along the path is estimated by comparison of two steps with one step of twice the length [Richardson
 /// 1911]. The estimate is zero for a force that is linear in the position, and large for a force that jumps. Elements
-/// with a potential are not counted. `add` does not allocate memory.
+/// with a potential are not counted, except the power that first-order states dissipate. `add` does not allocate
+/// memory.
 class WorkAccount {
  public:
   /// Restarts the account at `place`, the last evaluated state of `system`. `place.h` is not read.
@@ -109,10 +110,10 @@ class WorkAccount {
   void go_back() { last_ = marked_; }                   ///< discards the trial step
 
  private:
-  enum class Kind : unsigned char { force, drive, compliant };
+  enum class Kind : unsigned char { force, drive, compliant, states };
   struct Element {
     Kind kind;
-    Index index, row;     ///< index of the wrench or the block; index of its λ, −1 for a compliant joint
+    Index index, row;     ///< index of the wrench, block or force; index of its λ, −1 for a compliant joint
     std::size_t at, sum;  ///< index of its first number in a sample; index of its work
   };
   /// Wrenches, motions and powers of the elements at an instant, and their work up to this instant.
@@ -137,7 +138,9 @@ class WorkAccount {
   /// Index of the last number of an element.
   static std::size_t last_number(Element const& e, System const& system) {
     if (e.kind == Kind::force) return numbers_of_force - 1;
-    return e.kind == Kind::drive ? 0 : std::size_t(2 * system.data().rows[std::size_t(e.index)].rows);
+    return e.kind == Kind::drive || e.kind == Kind::states
+               ? 0
+               : std::size_t(2 * system.data().rows[std::size_t(e.index)].rows);
   }
   template <class = void>
   void read(System const& system, VecX const& lambda, double t, Sample& out) const;
@@ -166,6 +169,8 @@ void WorkAccount::begin(System const& system, StepResult const& place) {
     source = data.actions[i].source;
     complete_ = complete_ && !force.stores_in_part;
   }
+  for (std::size_t i = 0; i < layout.forces.size(); ++i)
+    if (layout.forces[i].dissipation) add_element(Kind::states, Index(i), -1, 1, false);
   Coordinates const& reduced = system.step_coordinates();
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
     ConstraintBlock<double> const& block = data.rows[i];
@@ -201,13 +206,18 @@ void WorkAccount::begin(System const& system, StepResult const& place) {
 }
 
 /// Reads the numbers of the elements. The last number of an element is its power: w · twist of a force, λ · Φ_t of a
-/// drive, −λ · ġ of a compliant joint.
+/// drive, −λ · ġ of a compliant joint, minus the dissipated power of states.
 template <class>
 void WorkAccount::read(System const& system, VecX const& lambda, double t, Sample& out) const {
   Data<double> const& data = system.data();
   out.t = t;
   for (Element const& e : elements_) {
     double* const to = out.numbers.data() + e.at;
+    if (e.kind == Kind::states) {
+      ForceLayout const& force = system.layout().forces[std::size_t(e.index)];
+      to[0] = -force.dissipation(force, t, data);
+      continue;
+    }
     if (e.kind == Kind::force) {
       AppliedWrench<double> const& action = data.actions[std::size_t(e.index)];
       Frame<double> const& f = data.markers[std::size_t(action.marker)].frame;
@@ -267,7 +277,7 @@ void WorkAccount::add(System const& system, StepResult const& end) {
     if (e.kind == Kind::force && from) {
       y[21] = along_path = detail::work_along_path(x, y, end.h);
       if (compares) doubt = detail::work_along_path(w, y, both) - x[21] - y[21];
-    } else if (e.kind == Kind::drive && compares) {
+    } else if ((e.kind == Kind::drive || e.kind == Kind::states) && compares) {
       doubt = 0.5 * (both * (w[last] + y[last]) - (both - end.h) * (w[last] + x[last])) - over_time;
     } else if (e.kind == Kind::compliant && from) {
       along_path = 0.0;

@@ -288,6 +288,25 @@ TEST(FirstOrderStates, RelaxAndCreep) {
        mass * 9.81 * 2.0, 1e-7);
 }
 
+// Kinetic energy becomes energy of the spring and is lost in the damper; no load does work.
+TEST(FirstOrderStates, StoreAndDissipate) {
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<MaxwellElement>> model;
+  auto const body = model.add(planar::Rigid(2.0, 0.1, Placement::planar(1.5, 0)), "mass");
+  model.apply(MaxwellElement{.stiffness = 50.0, .damping = 20.0, .free_length = 1.0}, model.ground().at({0, 0, 0}),
+              body.at(Vec2(0, 0)), "damper");
+  State x = model.reference_state();
+  x.v[1] = 0.3;
+  Energy const start = energy(model, x);
+  EXPECT_NEAR(start.forces, 0.5 * 50.0 * 0.25, 1e-12);
+  EnergyAudit audit(model);
+  audit.record(x);
+  EXPECT_NEAR(audit.powers().dissipated, 25.0 * 25.0 / 20.0, 1e-12);
+  for (State const& now : simulate(model, x, Radau{}, {.end_time = 2.0, .step = 1e-3})) audit.record(now);
+  EXPECT_EQ(audit.work_of_loads(), 0.0);
+  EXPECT_GT(audit.dissipated(), 1.0);
+  EXPECT_LT(audit.relative(), 1e-5);
+}
+
 // The work of the servo counts as the work of a load.
 TEST(FirstOrderStates, WorkAsLoads) {
   Plane plane;
