@@ -173,7 +173,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     }
     T const inverse = T(1.0) / detail::dot(slope, slope);
     Mat<T, 3, 3> const turned = smallest_turn<T>(slope, axes_[std::size_t(p.element)]);
-    T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n²
+    T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n², n = |r′|
     T along[3];
     for (int k = 0; k < 3; ++k) {
       int const j = (k + 1) % 3, l = (k + 2) % 3;
@@ -187,7 +187,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
         out.frame.A(i, k) = turned(i, 0) * axes(0, k) + turned(i, 1) * axes(1, k) + turned(i, 2) * axes(2, k);
       along[k] = slope[k] * inverse;
     }
-    for (int i = 0; i < 4; ++i) {  // columns of a node: s e_k above r′ × e_k s′/n²
+    for (int i = 0; i < 4; ++i) {  // columns of nodal vector i: s e_k above r′ × e_k s′/n²
       T *const x = out.jacobian + 18 * i, *const y = x + 6, *const z = y + 6;
       double const ds = s.ds[std::size_t(i)];
       T const none(0.0), here(s.s[std::size_t(i)]), a = along[0] * ds, b = along[1] * ds, c = along[2] * ds;

@@ -224,7 +224,7 @@ class CholeskyCoordinates : public AddingCoordinates {
         at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }
-  /// Product x = Lᵀ x.
+  /// Replaces x by Lᵀ x.
   void multiply(std::span<double> x) const {
     for (Index j = 0; j < n_; ++j) {
       double sum = 0.0;

@@ -51,13 +51,13 @@ struct HermiteCable {
   }
   /// Shape functions of r at ξ, and their derivatives with respect to arc length.
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
-  /// Row of θ̇ in the rotary inertia; zero, because a cable has none.
+  /// Row of θ̇ for the rotary inertia; zero, because a cable has no rotary inertia.
   template <class T = double>
   static Vec<T, 8> rotary(double, double) {
     return Vec<T, 8>::Zero();
   }
 
-  /// Angle θ of r′ for the coordinates e (8) and their rates `ed`, and θ̇ = r′ × ṙ′/|r′|². Without r̈′, θ̈ is −2
+  /// Angle θ of r′ for the coordinates e (8) and their rates `ed`, and θ̇ = r′ × ṙ′/|r′|². For r̈′ = 0, θ̈ is −2
   /// (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {

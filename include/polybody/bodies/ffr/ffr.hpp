@@ -31,7 +31,7 @@ class Ffr {
   static constexpr World world = World::space;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< joints with `JointCoordinates` move it
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< order of the frame's coordinates
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
   static constexpr Index default_elements = 8;  ///< number of elements of `from(bar)`
@@ -223,7 +223,7 @@ class Ffr {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX mv;  // energies are also evaluated within steps
+    static thread_local VecX mv;  // no allocation: energies are also evaluated within steps
     mv.resize(velocities());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), velocities()));

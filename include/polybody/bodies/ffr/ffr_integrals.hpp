@@ -44,7 +44,7 @@ void times(MatX const& m, T const* x, T* out) {
 
 /// Integrals of the body of a floating frame, in the axes of the frame, for the points u = u₀ + S q:
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
-///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the origin,
+///   J(q) = inertia + [inertia_by_kl · q + qᵀ inertia_second_kl q]_kl, the inertia tensor about the origin,
 ///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
 ///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,
 ///   U = ½ qᵀ stiffness q + initial_force · q.

@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Name, for messages, of row or column i of a matrix with x, y, z of every node.
+/// Name of row or column i in messages, for a matrix whose rows and columns are x, y, z of every node.
 template <class = void>  // compiled only if used
 std::string coordinate_name(Index i) {
   return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"});

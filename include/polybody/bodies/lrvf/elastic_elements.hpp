@@ -243,9 +243,9 @@ class ElasticElements {
     });
   }
 
-  /// Force of element e from l Σ w (N·δΓ + M·δK), with δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l (Γ
-  /// including Γ₀):
-  /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points.
+  /// Force of element e from the virtual work l Σ w (N·δΓ + M·δK). With δθ₁₂ = (δθ₁, δθ₂), δθ = P δθ₁₂, δK = Q δθ₁₂/l
+  /// and δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, where Γ includes Γ₀, the sums over the points are
+  ///   f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M),  t = l N × Γ.
   /// The function also adds moment(i), the moment of the inertia forces on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {

@@ -286,7 +286,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// Tangent −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  /// Tangent cd (−∂f/∂Ω) with −∂f/∂Ω = Ω̃ J − (J Ω)~.
   template <class T>  // compiled only if used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]);

@@ -53,9 +53,9 @@ Vec3 rotary_inertias(BarConstants const& c) {
 
 /// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate). Rigid motions of the bar cause no damping.
 struct Damping {
-  double axial = 0.0;    ///< time of the axial strain [s]
-  double shear = 0.0;    ///< time of shear and torsion [s]
-  double bending = 0.0;  ///< time of the curvatures [s]
+  double axial = 0.0;    ///< damping time of the axial strain [s]
+  double shear = 0.0;    ///< damping time of shear and torsion [s]
+  double bending = 0.0;  ///< damping time of the curvatures [s]
 };
 
 /// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. Its
@@ -64,11 +64,11 @@ struct Bar {
   Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar is given by `constants`
   std::optional<Material> material = {};                         ///< material of the section
-  std::optional<BarConstants> constants = {};                    ///< instead of section and material
-  Placement placement = {};                 ///< placement of the first end; the bar lies along its x axis
+  std::optional<BarConstants> constants = {};                    ///< constants that replace section and material
+  Placement placement = {};                 ///< placement of the first end; the axis of the bar is its x axis
   Damping damping = {};                     ///< damping of the material
   double pretension = 0.0;                  ///< axial force in the reference configuration [N]
-  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; by Cowper's formula if not given
+  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; default: Cowper's formula
 };
 
 /// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body type accepts a mesh. The number

@@ -43,7 +43,7 @@ concept HasRigidLayout = requires {
 
 /// Body that deforms relative to a frame which joints with `JointCoordinates` can move. The coordinates and generalised
 /// velocities of the frame come first, in the order `frame_layout`. The coordinates of the deformation follow and form
-/// a vector space. The sizes of all markers are known only at run time.
+/// a vector space. The number of columns of a marker is known only at run time.
 template <class B>
 concept FloatingFrameBody = requires(B const b) {
   { B::frame_layout } -> std::convertible_to<RigidLayout>;

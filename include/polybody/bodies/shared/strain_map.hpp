@@ -11,9 +11,9 @@
 namespace polybody {
 
 /// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point, and
-/// products with it. The parameters of a law are vectors of d = `components` entries, the shapes; np is the number of
-/// all entries. Shape s reads at most `reach` nodal vectors. Vector number j of shape s is e_v with v = `vector(s, j)`.
-/// One factor N_sj multiplies all its components:
+/// products with P. The parameters of a law form vectors of d = `components` entries, called shapes; np is the total
+/// number of entries. Shape s reads at most `reach` nodal vectors. Vector number j of shape s is e_v with v =
+/// `vector(s, j)`. One factor N_sj multiplies all components of e_v:
 ///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
 /// ê_v = e_v, except for the vector `difference` of a law: ê_v = e_v − e_0. Strains do not depend on the position of an
 /// element. The factors of the positions of its two ends are therefore opposite, and the difference replaces both
@@ -53,7 +53,7 @@ class StrainMap {
   struct Coordinates {
     Vec<T, n> const& e;  ///< must outlive this object
     Vec<T, d> step;      ///< difference e_v − e_0
-    /// Computes the difference for x.
+    /// Computes the difference from the coordinates x. x must outlive this object.
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
     }

@@ -20,9 +20,9 @@ class StrainPoints {
   static constexpr int np = Law::parameters, m = Law::strains;  ///< number of parameters and of strains
 
   using P = StrainMap<Law>;         ///< map from e to p
-  using Map = typename P::Factors;  ///< N at a point
+  using Map = typename P::Factors;  ///< factors N of P at a point
   template <class T, int n>
-  using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
+  using Coordinates = typename P::template Coordinates<T, n>;  ///< coordinates ê of an element (`StrainMap`)
   using Strains = Vec<double, m>;                              ///< one number for each strain
 
   StrainPoints() = default;
@@ -34,7 +34,7 @@ class StrainPoints {
     initial_ = initial;
     for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
-  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each of them.
+  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each point.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
@@ -98,7 +98,7 @@ class StrainPoints {
   /// 1996]:
   ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
-  /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
+  /// Strains that are components of a rotating vector enter through their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
   /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The term of `decay` then exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
