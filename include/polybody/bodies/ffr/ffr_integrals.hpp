@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
-/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or are given by the user.
+/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or the user provides them.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 

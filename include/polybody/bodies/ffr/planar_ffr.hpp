@@ -70,7 +70,7 @@ class Ffr : public AddingCoordinates {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// Body from integrals that the user computes.
-  /// \throws InvalidInput for integrals of different sizes.
+  /// \throws InvalidInput for integrals that `FfrIntegrals::check` refuses, and for a placement that leaves the plane.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
     i_.check("planar::Ffr");

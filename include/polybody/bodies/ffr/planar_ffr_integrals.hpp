@@ -6,7 +6,7 @@
 
 namespace polybody::planar {
 
-/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame, for the
+/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame. For the
 /// points u = u₀ + S q, with C = ∂c/∂q and the unit normal e of the plane:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
 ///   H = ∫ρ u × S = coupling + qᵀ coupling_by,

@@ -7,9 +7,9 @@
 namespace polybody {
 
 /// Adds statically determinate supports to `frame`: conditions that prevent rigid motions without straining the
-/// structure. All coordinates of the first node a are held. If nodes have no rotations, two more nodes are held along
-/// coordinate axes: node b, farthest from a, along the two axes other than the one closest to the line a–b; and node c,
-/// farthest from this line, along the axis closest to the normal of the plane through a, b and c.
+/// structure. All coordinates of the first node a are held. If nodes have no rotations, two more nodes are held. Node b
+/// is farthest from a and is held along two coordinate axes: all but the one closest to the line a–b. Node c is
+/// farthest from this line and is held along the axis closest to the normal of the plane through a, b and c.
 template <class = void>  // compiled only if used
 ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame = {}) {
   for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);

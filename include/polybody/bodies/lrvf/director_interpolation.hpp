@@ -23,7 +23,7 @@ class Directors : public Polar {
 };
 
 namespace detail {
-/// Directors of one section, and the derivatives of their strains with respect to the nodes.
+/// Directors of one section, and the derivatives of Γ with respect to the rotations of the nodes.
 template <StateScalar T>
 struct DirectorSection {
   Mat<T, 3, 3> directors;  ///< Λ

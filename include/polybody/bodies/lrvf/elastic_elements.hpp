@@ -24,7 +24,7 @@ namespace polybody {
 /// Strains of an element at one of its sections, in a state.
 template <StateScalar T>
 struct SectionStrains {
-  StrainSection<T> at;  ///< section, with its derivatives with respect to the nodes
+  StrainSection<T> at;  ///< section, with its derivatives with respect to the rotations of the nodes
   double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
   Vec<T, 3> gamma;      ///< Γ + Γ₀ = Rᵀ r′, with the axes R of the section
   Vec<T, 3> rate;       ///< Rᵀ ṙ′, for damping

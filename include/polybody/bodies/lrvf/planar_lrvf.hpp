@@ -52,7 +52,7 @@ struct SimoVuQuoc {
     return row;
   }
 
-  /// Angle θ(ξ) at the coordinates e (6). The field is linear, so that there is no bias.
+  /// Angle θ(ξ) at the coordinates e (6). The field is linear, so that θ̈ is zero for ë = 0.
   template <StateScalar T>
   static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
     Vec<T, 6> const row = rotary<T>(xi, l);

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Section at which strains are evaluated, with its derivatives with respect to the nodes.
+/// Section at which strains are evaluated, with its derivatives with respect to the rotations of the nodes.
 template <StateScalar T>
 struct StrainSection {
   Mat<T, 3, 3> R;     ///< axes of the section in world axes

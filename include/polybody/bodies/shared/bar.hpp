@@ -62,7 +62,7 @@ struct Damping {
 /// data are either `section` and `material`, or `constants`.
 struct Bar {
   Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
-  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar is given by `constants`
+  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar has `constants`
   std::optional<Material> material = {};                         ///< material of the section
   std::optional<BarConstants> constants = {};                    ///< constants that replace section and material
   Placement placement = {};                 ///< placement of the first end; the axis of the bar is its x axis

@@ -86,8 +86,8 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// Adds the force `step` on the difference e_v − e_0 to f: to the force on e_v, and with the opposite sign to that on
-  /// e_0.
+  /// Distributes the force `step` on the difference e_v − e_0: adds it to the force on e_v in f, and subtracts it from
+  /// the force on e_0.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)

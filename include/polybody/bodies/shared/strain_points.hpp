@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quadrature points of a group of strains (see strain_group.hpp): strain energy, and the discrete-gradient force,
-/// whose work over a step equals the change of the energy.
+/// Quadrature points of a group of strains (strain_group.hpp): strain energy, and the discrete-gradient force. Without
+/// dissipation, the work of this force over a step is the negative change of the energy.
 
 #include <array>
 
