@@ -361,7 +361,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Bar bar_;
   BarConstants constants_;
   double l_ = 0.0;
-  std::vector<Placement> nodes_;             ///< in the bar's axes
+  std::vector<Placement> nodes_;             ///< placements of the nodes, in the axes of the bar
   std::vector<ancf::Reference> references_;  ///< one if all elements are alike, otherwise one per element
   std::vector<Inertia> inertia_;
 };

@@ -324,7 +324,7 @@ struct Continuum {
   template <class T>  // compiled only if used
   static Vec<T, 6> stretch_and_bend(BarConstants const& c, ancf::Coordinates const& e, double l, double xi) {
     Mat<double, ancf::vectors, 4> const n = ancf::shape(xi, 0.0, 0.0, l);
-    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; the derivatives of r_y, r_z
+    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; r_y′ and r_z′
     for (int i = 0; i < 3; ++i) {
       for (int a = 0; a < ancf::vectors; ++a) along[i] += n(a, 1) * e[3 * a + i];
       by[i] = (e[18 + i] - e[6 + i]) / l;

@@ -16,7 +16,7 @@ namespace polybody {
 /// The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is `rotation` e.
 struct BeamShapes {
   Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< its ∂/∂y and ∂/∂z
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< y and z derivatives
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]

@@ -154,8 +154,8 @@ struct FfrIntegrals {
   /// First and second moment of the deformed body about the origin of its frame [kg m], [kg m²].
   template <class T>
   struct Moments {
-    Vec<T, 3> c;     ///< ∫ρ u
-    Mat<T, 3, 3> J;  ///< inertia tensor
+    Vec<T, 3> c;     ///< first moment ∫ρ u
+    Mat<T, 3, 3> J;  ///< inertia tensor about the origin
   };
 
   /// Moments c(q) and J(q) at q = x (n).

@@ -140,7 +140,7 @@ class LrvfSection {
     Mat<T, 3, 3> nx;      ///< ∂N/∂x
     Mat<T, 3, 6> nt, mt;  ///< ∂N/∂θ, ∂M/∂θ
   };
-  /// Derivatives δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙ and, in the same form, δM of Q θ. With Γ˙ = u + Γ × Ω and
+  /// Derivative δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙, and δM in the same form with Q θ. With Γ˙ = u + Γ × Ω and
   /// u = Rᵀ (ṙ₂ − ṙ₁)/c₀:
   ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>

@@ -40,8 +40,8 @@ struct BarConstants {
   double rotary_inertia = 0.0;                  ///< Iρ about z, per length [kg m]
   std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; EI if not given
   std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; GA if not given
-  std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; `rotary_inertia` if not given
-  std::optional<double> polar_inertia = {};     ///< about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
+  std::optional<double> rotary_inertia_y = {};  ///< Iρ about y, per length [kg m]; `rotary_inertia` if not given
+  std::optional<double> polar_inertia = {};     ///< Iρ about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
 };
 
 /// Rotary inertias Iρ of a section about x (the axis of the bar), y and z, per length [kg m].

@@ -38,7 +38,7 @@ template <StateScalar T>
 struct CentreLine {
   Vec<T, 2> r;  ///< position [m]
   Vec<T, 2> v;  ///< velocity [m/s]
-  T angle;      ///< from world x to the normal of the section [rad]
+  T angle;      ///< angle from world x to the normal of the section [rad]
   T rate;       ///< rate of the angle [rad/s]
   T rate_bias;  ///< second derivative of the angle for ë = 0 [rad/s²]
 };

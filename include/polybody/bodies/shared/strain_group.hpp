@@ -197,12 +197,12 @@ class StrainGroup : public StrainPoints<Law> {
   }
 
  private:
-  /// Parameters, strains, their rates, and B at a point.
+  /// Parameters p and strains at a point, their rates, and the derivative B of the strains.
   template <class T>
   struct Moving {
     Vec<T, np> p, pd;
     Vec<T, m> strain, rate;
-    Mat<T, m, np> b;  ///< B
+    Mat<T, m, np> b;  ///< B = ∂ε/∂p
   };
 
   /// Strain rates ε̇ = B ṗ.

@@ -23,7 +23,7 @@ namespace polybody {
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< sizes
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< sizes of P
 
   using Factors = Mat<double, shapes, reach>;  ///< matrix of the factors N
   template <class T>
@@ -52,7 +52,7 @@ class StrainMap {
   template <class T, int n>
   struct Coordinates {
     Vec<T, n> const& e;  ///< must outlive this object
-    Vec<T, d> step;      ///< difference e_v − e_0
+    Vec<T, d> step;      ///< difference e_v − e_0; e_0 if the law has no `difference`
     /// Computes the difference from the coordinates x. x must outlive this object.
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];

@@ -183,15 +183,15 @@ class StrainPoints {
  protected:
   static constexpr bool quadratic = QuadraticStrains<Law>;  ///< true if the strains are quadratic in the parameters
 
-  Strains stiffness_ = Strains::Zero();             ///< C
-  Strains time_ = Strains::Zero();                  ///< τ [s]
-  Strains initial_ = Strains::Zero();               ///< n⁰
+  Strains stiffness_ = Strains::Zero();             ///< stiffness C
+  Strains time_ = Strains::Zero();                  ///< damping times τ [s]
+  Strains initial_ = Strains::Zero();               ///< initial stress n⁰
   bool damped_ = false;                             ///< true if any τ is not zero
-  std::array<Map, std::size_t(Law::points)> maps_;  ///< N
+  std::array<Map, std::size_t(Law::points)> maps_;  ///< factors N of each point
   /// Product of the two factors of each pair (`StrainMap::Pair`), at each point.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
   std::array<double, Law::points> weights_;  ///< weight of each point [m]
-  std::array<Strains, Law::points> free_;    ///< ε⁰
+  std::array<Strains, Law::points> free_;    ///< stress-free strains ε⁰ of each point
 };
 
 }  // namespace polybody

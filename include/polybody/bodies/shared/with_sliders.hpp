@@ -24,7 +24,7 @@ concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const
 
 /// Index of a slider on its body.
 struct Slider {
-  Index index = 0;  ///< counted from 0
+  Index index = 0;  ///< index of the slider, counted from 0
 };
 
 /// Cable or beam with sliders: `WithSliders(AncfCable<>::from(bar, n), {s₁, …})`, where s [m] are the initial positions
