@@ -63,7 +63,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
   /// initial configuration is bent.
   /// \throws InvalidInput for n < 1, and for a curve that is not parameterised by its arc length. The axial strain of
-  /// the cubic through the nodes must be below 0.1.
+  /// the cubic through the nodes must lie in (−0.1, 0.1).
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);

@@ -111,7 +111,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// A circular arc of radius R is therefore straight under the moment EI/R.
   /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
   /// or is not parameterised by its arc length. The axial strain of an element relative to
-  /// the arc length must be below 0.1.
+  /// the arc length must lie in (−0.1, 0.1).
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
