@@ -148,8 +148,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
 
   /// Marker kinematics of the material point `p`. The axes are those of the section at the axis of the beam
-  /// (`Elastic::frame` of r_y and r_z). A point at a distance from the axis follows r(x, y, z), which includes the
-  /// strain of the section.
+  /// (`Elastic::frame` of r_y and r_z). A point off the axis moves with r(x, y, z), which includes the strain of the
+  /// section.
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {
@@ -189,8 +189,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     out.columns = element_columns;
   }
 
-  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. The force contributes nothing, because S is constant. For the moment,
-  /// δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the axes of the section.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. The force contributes nothing, because S is constant. For the moment
+  /// and rotations φ, φ̂ of the section due to two variations, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the axes of the section.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
@@ -266,7 +266,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight);
 
   /// Checks the reference of element `e`.
-  /// \throws InvalidInput if the reference is not a beam.
+  /// \throws InvalidInput for ends that coincide, a chord longer than the element, or a section turned inside out.
   void check_reference(ancf::Reference const& ref, Index e) const {
     std::string const what = sentence_of({Elastic::name, ": element ", e});
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
@@ -296,8 +296,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     }
   }
 
-  /// Mass integrals of the reference `ref`, over Gauss points along x (exact for the straight bar) and the four points
-  /// of the section that give Aρ and both Iρ.
+  /// Mass integrals of the reference `ref`. Quadrature points: Gauss points along x, exact for the straight bar, and
+  /// four points of the section that reproduce Aρ and both Iρ.
   Inertia inertia_of(ancf::Reference const& ref) const {
     double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
     ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};
@@ -361,7 +361,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Bar bar_;
   BarConstants constants_;
   double l_ = 0.0;
-  std::vector<Placement> nodes_;             ///< in the bar's axes
+  std::vector<Placement> nodes_;             ///< placements of the nodes, in the axes of the bar
   std::vector<ancf::Reference> references_;  ///< one if all elements are alike, otherwise one per element
   std::vector<Inertia> inertia_;
 };

@@ -12,9 +12,9 @@ template <class Strain, int axial_points, int bending_points>
 using CableGroups =
     std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;
 
-/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 coordinates per
-/// element, constant mass matrix, without torsion and without a deformable section [thesis Eq. 3.16–3.20, 4.8;
-/// Gerstmayr & Shabana 2006]. With s_i of `hermite_shape`,
+/// Gradient-deficient ANCF cable in space [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. The position field is
+/// a cubic Hermite polynomial with the coordinates (r, r′) at each node, 12 per element. The mass matrix is constant.
+/// The cable has no torsion, and its section does not deform. With s_i of `hermite_shape`,
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 /// `AncfCable<>::from(bar, n)` has Green strain, `AncfCable<EngineeringStrain>` has engineering strain. The numbers of
 /// Gauss points for axial strain and bending are template parameters; 5 and 3 are suitable for the cubic field
@@ -62,8 +62,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   }
   /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
   /// initial configuration is bent.
-  /// \throws InvalidInput for n < 1, and for a curve that is not parameterised by its arc length: |r′| of the cubic
-  /// through the nodes differs from 1 by more than 0.1.
+  /// \throws InvalidInput for n < 1, and for a curve that is not parameterised by its arc length. The axial strain of
+  /// the cubic through the nodes must lie in (−0.1, 0.1).
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -173,7 +173,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     }
     T const inverse = T(1.0) / detail::dot(slope, slope);
     Mat<T, 3, 3> const turned = smallest_turn<T>(slope, axes_[std::size_t(p.element)]);
-    T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n²
+    T const fade = detail::dot(slope, rate) * inverse * (-2.0);  // ω˙ = r′ × r̈′/n² − 2 (r′·ṙ′) ω/n², n = |r′|
     T along[3];
     for (int k = 0; k < 3; ++k) {
       int const j = (k + 1) % 3, l = (k + 2) % 3;
@@ -187,7 +187,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
         out.frame.A(i, k) = turned(i, 0) * axes(0, k) + turned(i, 1) * axes(1, k) + turned(i, 2) * axes(2, k);
       along[k] = slope[k] * inverse;
     }
-    for (int i = 0; i < 4; ++i) {  // columns of a node: s e_k above r′ × e_k s′/n²
+    for (int i = 0; i < 4; ++i) {  // columns of nodal vector i: s e_k above r′ × e_k s′/n²
       T *const x = out.jacobian + 18 * i, *const y = x + 6, *const z = y + 6;
       double const ds = s.ds[std::size_t(i)];
       T const none(0.0), here(s.s[std::size_t(i)]), a = along[0] * ds, b = along[1] * ds, c = along[2] * ds;

@@ -12,7 +12,7 @@ namespace polybody {
 
 namespace ancf {
 
-/// Base class of strains that depend on columns f of the deformation gradient F. The shape functions use all nodal
+/// Base class of strains that depend on `used` columns f of the deformation gradient F, and thereby on all nodal
 /// vectors.
 template <int used>
 struct OfGradient {
@@ -21,7 +21,7 @@ struct OfGradient {
   static constexpr int reach = vectors - 1;
   static constexpr int difference = vectors / 2;
   static constexpr int vector(int, int j) { return j + 1; }
-  /// Matrix P of the columns `which` of F, from the gradients `g` of the shape functions.
+  /// Factors N of the map P (`StrainMap`) to the columns `which` of F, from the gradients `g` of the shape functions.
   static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
     Mat<double, used, vectors - 1> n;
     for (int v = 1; v < vectors; ++v)
@@ -109,7 +109,7 @@ struct GreenStrains : OfGradient<3> {
 
 }  // namespace ancf
 
-/// Treatment of locking in a `Continuum` beam: left in the element, or removed.
+/// Treatment of locking in a `Continuum` beam: the element locks (`present`), or does not (`cured`).
 enum class Locking { present, cured };
 
 namespace ancf {
@@ -124,12 +124,12 @@ struct ContinuumGroups<Locking::present> {
   using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains at 12 points
   using type = std::tuple<Volume>;               ///< the groups of an element
 };
-/// Axial strain along the axis, mean shear strains, and strains within a section.
+/// Axial strain and shear strains at points of the volume; the other strains on the axis.
 template <>
 struct ContinuumGroups<Locking::cured> {
   using Number = double;                          ///< scalar type of the stiffness and the damping times
   using Along = StrainGroup<AlongStrain>;         ///< E₁₁ at 12 points
-  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ at 12 points, distances scaled by `lever`
+  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ at 12 points, see `Continuum::lever`
   using Across = StrainGroup<GreenStrains<2>>;    ///< the other terms of Hooke's law, on the axis at both nodes
   using type = std::tuple<Along, Shear, Across>;  ///< the groups of an element
 };
@@ -154,12 +154,13 @@ struct Stress {
 /// deflection of a slender cantilever is (1 + ν)(1 − 2ν)/(1 − ν) times the correct one.
 ///
 /// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
-///   E E₁₁² over the volume, as in a bar under uniaxial stress;
-///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis only, at the nodes (trapezoidal rule):
-///   between the nodes of a bent element, interpolation along the chord gives |r_y| < 1, which would add stiffness;
-///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points whose distance
-///   from the axis is scaled until the torsional stiffness equals GJ of the bar. The quadrature keeps three points
-///   along x: with two, a mode has no energy; three do not lock (see `ElasticLine`).
+///   Young's modulus times E₁₁², over the volume, as in a bar under uniaxial stress;
+///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis at the nodes (trapezoidal rule). Between
+///   the nodes of a bent element, interpolation along the chord gives |r_y| < 1, which would add stiffness;
+///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points of the section.
+///   Their distance to the axis is scaled so that the torsional stiffness equals GJ of the bar. The quadrature has
+///   three points along x. With two, a mode would have no energy; with three, the element does not lock
+///   (`ElasticLine`).
 ///
 /// Kelvin–Voigt times: axial for normal strains and therefore also for bending; shear for shears. Ė is objective.
 /// `Damping::bending` is not used by this policy.
@@ -235,8 +236,7 @@ struct Continuum {
     }
   }
 
-  /// Factor on the distance from the axis that converts section points (`SectionPoints`) to the points of the shear
-  /// strains.
+  /// Distance of a point of the shear strains from the axis, divided by that of its section point (`SectionPoints`).
   static double lever(BarConstants const& c) {
     if constexpr (cured)
       return std::sqrt(c.GJ * c.EA / (c.GA * c.EI_y.value() + c.GA_z.value() * c.EI));
@@ -244,8 +244,8 @@ struct Continuum {
       return 1.0;
   }
 
-  /// Stress at a point with strain `e`, where `at_axis` is the strain at the centre of the same section; without
-  /// damping.
+  /// Second Piola–Kirchhoff stress [N/m²] for the strain `e`, without damping. `at_axis` is the strain at the centre of
+  /// the same section.
   template <class T = double>  // compiled only if used
   static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& at_axis) {
     Moduli const m(bar);
@@ -265,13 +265,13 @@ struct Continuum {
   /// Fraction p of the torque that r_y carries. If r_y rotates by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
   /// 2E₂₃ = α − β. The torsional stiffnesses are D_y = GA_z y² for α and D_z = GA z² for β, coupled by GA. Under a
   /// torque both rotations are equal in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end may
-  /// apply another fraction p̂. The shear 2E₂₃ reduces the difference over the length ℓ with ℓ² = D_y D_z/((D_y + D_z)
-  /// GA). The marker at this end rotates by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
+  /// apply another fraction p̂. Due to the shear 2E₂₃, p̂ − p decays over the length ℓ with ℓ² = D_y D_z/((D_y + D_z)
+  /// GA). Under a torque T the marker at this end rotates by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
   static double share(BarConstants const& c) {
     double const y = c.EI * (cured ? c.GA_z.value() : 1.0), z = c.EI_y.value() * (cured ? c.GA : 1.0);
     return y / (y + z);
   }
-  /// Frame of a section with r_y = b, r_z = c for markers: the mean weighted by `share`.
+  /// Frame of markers on a section with r_y = b, r_z = c: the mean frame with the weight `share` of r_y.
   template <KernelScalar T>
   static MeanSectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const& bar) {
     return {b, c, share(bar)};
@@ -324,7 +324,7 @@ struct Continuum {
   template <class T>  // compiled only if used
   static Vec<T, 6> stretch_and_bend(BarConstants const& c, ancf::Coordinates const& e, double l, double xi) {
     Mat<double, ancf::vectors, 4> const n = ancf::shape(xi, 0.0, 0.0, l);
-    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; the derivatives of r_y, r_z
+    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; r_y′ and r_z′
     for (int i = 0; i < 3; ++i) {
       for (int a = 0; a < ancf::vectors; ++a) along[i] += n(a, 1) * e[3 * a + i];
       by[i] = (e[18 + i] - e[6 + i]) / l;

@@ -16,12 +16,11 @@ namespace polybody {
 /// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
 /// On fine meshes the sections therefore keep their shape, and the element converges to the exact rod. Quadrature:
 ///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0 and
-///   equal r_x across the axis at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, which is zero
-///   at two Gauss points. The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with
-///   Γ = 0.
+///   the same transverse r_x at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, which is zero
+///   at both points. The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with Γ = 0.
 ///   K at two points: for sections that rotate by θ per element, the result is θ/l with an error of order θ⁴.
-///   The strains of the section only at the nodes: between them |r_y| decreases to cos(θ/2) by the interpolation along
-///     the chord, which is not a strain.
+///   The strains of the section at the nodes only. Between the nodes, interpolation along the chord reduces |r_y| to
+///     cos(θ/2), which is not a strain.
 /// Kelvin–Voigt times: axial for Γ₁ and the stretches of the section; shear for Γ₂, Γ₃, twist and the shear of the
 /// section; bending for the curvatures.
 struct ElasticLine {
@@ -52,7 +51,7 @@ struct ElasticLine {
       return n;
     }
 
-    /// Vector u = Rᵀ r₀′ with the variation δu = Rᵀ δr₀′ + u × φ.
+    /// Vector u = Rᵀ r₀′ with the variation δu = Rᵀ δr₀′ + u × φ, with the rotation φ of the frame in its axes.
     template <KernelScalar T>
     static void evaluate(Vec<T, 9> const& p, Vec<T, 3>& strain, Mat<T, 3, 9>& b) {
       SectionFrame<T> const f({p[3], p[4], p[5]}, {p[6], p[7], p[8]});
@@ -198,7 +197,7 @@ struct ElasticLine {
             on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
-  /// Frame of a section with r_y = b, r_z = c for markers. This frame equals the frame of Γ and K. A joint or a moment
+  /// Frame of markers on a section with r_y = b, r_z = c. This frame equals the frame of Γ and K. A joint or a moment
   /// therefore does work only on these strains, and the section keeps its shape.
   template <KernelScalar T>
   static SectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const&) {

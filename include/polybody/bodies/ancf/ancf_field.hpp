@@ -13,8 +13,8 @@
 
 namespace polybody::ancf {
 
-inline constexpr int vectors = 8;  ///< nodal vectors of an element, numbered v; component i is coordinate 3 v + i
-inline constexpr int columns = 3 * vectors;  ///< coordinates of an element
+inline constexpr int vectors = 8;  ///< number of nodal vectors e_v of an element; entry i of e_v is coordinate 3v + i
+inline constexpr int columns = 3 * vectors;  ///< number of coordinates of an element
 using Coordinates = Vec<double, columns>;    ///< coordinates of an element (24)
 
 /// Shape functions N_v and their derivatives with respect to x, y, z at (ξ, y, z), as columns.

@@ -39,8 +39,8 @@ struct GreenStrain {
   }
 };
 
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². Both are linear in the stress
-/// resultants of the exact rod [Gerstmayr & Irschik 2008].
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². In the exact rod, axial force and
+/// bending moment are linear in ε and κ [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
   static constexpr int curvature_power = 2;  ///< power k of |r′| in the bending measure
 
@@ -89,7 +89,7 @@ T inverse_power(T const& inverse2) {
 
 }  // namespace detail
 
-/// Axial strain, with p = r′. Five points integrate ε² of the cubic field exactly.
+/// Axial strain, with p = r′. Five Gauss points integrate ε² of the Green strain exactly.
 template <class Strain, int axial_points, int dimension = 3>
 struct CableAxial {
   static constexpr int points = axial_points;
@@ -143,7 +143,7 @@ struct CableBending {
     return detail::cable_curvature_map<T>(xi, l);
   }
 
-  /// Derivatives with c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
+  /// Derivatives, with n = |s|: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
   template <KernelScalar T>
   static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
     T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = detail::inverse_power<k>(inverse2);
@@ -160,7 +160,7 @@ struct CableBending {
     }
   }
 
-  /// Square κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ.
+  /// Square κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ, with n = |s|.
   template <KernelScalar T>
   static T square(Vec<T, 6> const& p) {
     T const ss = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], uu = p[3] * p[3] + p[4] * p[4] + p[5] * p[5];
@@ -168,7 +168,8 @@ struct CableBending {
     return (ss * uu - su * su) * (inverse * inverse);
   }
 
-  /// Second derivatives of w·κ = c/nᵏ, with c = w·(s × u), ∂c/∂s = a = u × w, ∂c/∂u = d = w × s, ∂²c/∂s∂u = −w̃:
+  /// Second derivatives of w·κ = c/nᵏ, with n = |s|, c = w·(s × u), ∂c/∂s = a = u × w, ∂c/∂u = d = w × s and
+  /// ∂²c/∂s∂u = −w̃:
   ///   ∂²/∂s² = (−k (a sᵀ + s aᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²/∂s∂u = −w̃/nᵏ − k s dᵀ/nᵏ⁺².
   template <KernelScalar T>
   static void add_hessian(Vec<T, 6> const& p, Vec<T, 3> const& w, Mat<T, 6, 6>& h) {

@@ -84,8 +84,8 @@ class CholeskyCoordinates : public AddingCoordinates {
   {
     return by_own(body_.position_map(p), p);
   }
-  /// Matrix of the gradient `alpha` at the point `p`, over all columns of the body; `alpha` = 0, 1, 2 for x, y, z, if
-  /// the body has this gradient.
+  /// Matrix of the position gradient ∂r/∂x, ∂r/∂y or ∂r/∂z (`alpha` = 0, 1, 2) at the point `p`, over all columns of
+  /// the body. The underlying body must have this gradient.
   MatX gradient_map(Point const& p, int alpha) const
     requires HasLinearPoints<B>
   {
@@ -224,7 +224,7 @@ class CholeskyCoordinates : public AddingCoordinates {
         at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }
-  /// Product x = Lᵀ x.
+  /// Replaces x by Lᵀ x.
   void multiply(std::span<double> x) const {
     for (Index j = 0; j < n_; ++j) {
       double sum = 0.0;

@@ -57,8 +57,8 @@ class MeanSectionFrame : public SectionAxes<T> {
     V3 const x = local(db), y = local(dc);
     return {x[0], x[1], x[2], y[0], y[1], y[2]};
   }
-  /// Rotation φ = S w in the axes of the frame. For rates it is the angular velocity, for derivatives along the axis
-  /// twist and curvatures.
+  /// Rotation φ = S w in the axes of the frame. If b and c change with time, φ is the angular velocity; if they change
+  /// along the axis, φ is twist and curvatures.
   V3 spin(V6 const& w) const {
     return {(w[2] * p_ - w[4] * (1.0 - p_)) * im_, (b_[1] * w[3] - c_[1] * w[0]) * in_,
             (b_[2] * w[3] - c_[2] * w[0]) * in_};
@@ -68,7 +68,7 @@ class MeanSectionFrame : public SectionAxes<T> {
     return {-(c_[1] * m[1] + c_[2] * m[2]) * in_, T(0.0), m[0] * p_ * im_, (b_[1] * m[1] + b_[2] * m[2]) * in_,
             -(m[0] * (1.0 - p_)) * im_,           T(0.0)};
   }
-  /// Change δ̂φ of φ for a constant d with components w, while the frame moves by a change with components ŵ = `by`.
+  /// Change δ̂φ of φ for a constant d with components w, due to a second change of b and c with components ŵ = `by`.
   V3 change(V6 const& w, V6 const& by) const {
     V3 const phi = spin(w), turn = spin(by), x = cross(head(w), turn), y = cross(tail(w), turn),
              b = cross(b_, turn) + head(by), c = cross(c_, turn) + tail(by), bx = cross(phi, b), cy = cross(phi, c);

@@ -10,9 +10,10 @@ namespace polybody::planar {
 
 using polybody::EngineeringStrain, polybody::GreenStrain;
 
-/// Theory of the planar `AncfCable`: cubic Hermite position field, node coordinates (x, y, x′, y′), constant mass
-/// matrix, neither rotation coordinates nor rotary inertia [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis
-/// Eq. 3.16–3.20]. The template arguments set the numbers of Gauss points for axial strain and bending.
+/// Theory of the planar `AncfCable` [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20]. The
+/// position field is a cubic Hermite polynomial with the coordinates (x, y, x′, y′) at each node. The mass matrix is
+/// constant. The cable has neither rotation coordinates nor rotary inertia. The template arguments set the numbers of
+/// Gauss points for axial strain and bending.
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";  ///< name of the body type in messages
@@ -51,13 +52,13 @@ struct HermiteCable {
   }
   /// Shape functions of r at ξ, and their derivatives with respect to arc length.
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
-  /// Row of θ̇ in the rotary inertia; zero, because a cable has none.
+  /// Row of θ̇ for the rotary inertia; zero, because a cable has no rotary inertia.
   template <class T = double>
   static Vec<T, 8> rotary(double, double) {
     return Vec<T, 8>::Zero();
   }
 
-  /// Angle θ of r′ for the coordinates e (8) and their rates `ed`, and θ̇ = r′ × ṙ′/|r′|². Without r̈′, θ̈ is −2
+  /// Angle θ of r′ for the coordinates e (8) and their rates `ed`, and θ̇ = r′ × ṙ′/|r′|². For r̈′ = 0, θ̈ is −2
   /// (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {

@@ -89,8 +89,8 @@ class SectionFrame : public SectionAxes<T> {
     }
     return w;
   }
-  /// Rotation φ = S w in the axes of the frame. For rates it is the angular velocity, for derivatives along the axis
-  /// twist and curvatures.
+  /// Rotation φ = S w in the axes of the frame. If b and c change with time, φ is the angular velocity; if they change
+  /// along the axis, φ is twist and curvatures.
   V3 spin(V6 const& w) const { return V3(w[2], w[3] - sigma_ * w[0], -w[0]); }
   /// Product Sᵀ m, with m (3) in the axes of the frame.
   V6 pull(V3 const& m) const {
@@ -101,8 +101,8 @@ class SectionFrame : public SectionAxes<T> {
     s[3] = m[1];
     return s;
   }
-  /// Matrix M(m), 6×6, of m·δ̂φ(w) = wᵀ M ŵ for a constant d with components w. It is the second derivative of the
-  /// rotation: `pairing(pull(m), 1)` minus m₂ g in its first row.
+  /// Matrix M(m), 6×6, of m·δ̂φ(w) = wᵀ M ŵ for a constant d with components w: the second derivative of the rotation.
+  /// It equals `pairing(pull(m), 1)` minus m₂ g in the first row.
   M6 second(V3 const& m) const {
     T const along = m[2] + sigma_ * m[1];
     M6 h;
@@ -235,7 +235,7 @@ class SectionFrame : public SectionAxes<T> {
                                         {true, false, false, true, false, false}}};
 
   /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes: R h_ab Rᵀ, divided by the
-  /// lengths of the vectors of a and b, β or c₃.
+  /// lengths for a and b (0: β, 1: c₃).
   template <Places places, class F>
   void add_world(M6 const& h, int a, int b, F&& add) const {
     T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);

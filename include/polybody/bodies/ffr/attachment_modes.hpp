@@ -29,7 +29,7 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 
 }  // namespace detail
 
-/// Basis of static shapes for given loads and of free modes, in mean axes [MacNeal 1971; Rubin 1975; Craig & Kurdila
+/// Basis of static shapes for nodal loads and of free modes, in mean axes [MacNeal 1971; Rubin 1975; Craig & Kurdila
 /// 2006, §17.3]. The inertia of the resulting rigid acceleration balances a load f on the free structure:
 ///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,  K x = f_b,  Rᵀ M x = 0,  with the rigid motions R.
 /// Stress and stiffness under such loads therefore equal those of the full model for any number of modes. The basis is
@@ -39,7 +39,7 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 /// The result contains the static shapes of the nodal loads `loads` (N×m) and the `count` lowest modes, computed by
 /// `solve`. The shapes are orthogonal with unit modal mass. Linearly dependent shapes are omitted.
 /// \throws InvalidInput for loads that do not fit the structure or are not finite, for a count above the number of
-/// modes, and for a structure that can move without strain in other ways than a rigid body.
+/// modes, and for a structure that has motions without strain other than rigid ones.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   require_finite(loads, "Ffr: the nodal loads of attachment modes");

@@ -16,7 +16,7 @@ namespace polybody {
 /// The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is `rotation` e.
 struct BeamShapes {
   Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< derivatives by y and z
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< y and z derivatives
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]
@@ -94,7 +94,7 @@ void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& su
 
 /// Gauss point of a beam in the axes of the body, with its contributions to ∫ρ, ∫ρy², ∫ρz².
 struct MassPoint {
-  Vec3 at;                        ///< position of the axis from the origin of the body axes [m]
+  Vec3 at;                        ///< position on the axis of the beam, from the origin of the body [m]
   Mat<double, 3, 12> axis, y, z;  ///< (3×12) displacement of the axis and its derivatives with respect to y and z
   double m, my, mz;               ///< contributions to ∫ρ [kg], ∫ρy² and ∫ρz² [kg m²]
 };
@@ -221,7 +221,7 @@ void add_inertia(Structure& s, Structure::Beam const& beam,
 
 }  // namespace detail
 
-/// Ends of bars are one node if their distance is smaller than this fraction of the length of the longest bar.
+/// Two ends of bars share a node if their distance is smaller than this fraction of the length of the longest bar.
 inline constexpr double same_node = 1e-9;
 
 /// Structure of `bars`, each divided into the number of elements given by `elements`, welded at common ends. The

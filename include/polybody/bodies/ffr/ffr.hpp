@@ -14,8 +14,8 @@
 
 namespace polybody {
 
-/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, given by a
-/// structure and a basis, in a frame with arbitrary motion. With c, J, H of ffr_integrals.hpp and C = c_q, all in the
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation of a
+/// structure with a basis, in a frame with arbitrary motion. With c, J, H of ffr_integrals.hpp and C = c_q, all in the
 /// axes of the frame, Lagrange's equations of T(ṙ, Ω, q̇) give
 ///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
 ///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
@@ -31,7 +31,7 @@ class Ffr {
   static constexpr World world = World::space;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< joints with `JointCoordinates` move it
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< order of the frame's coordinates
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
   static constexpr Index default_elements = 8;  ///< number of elements of `from(bar)`
@@ -64,7 +64,7 @@ class Ffr {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
   /// Body from integrals that the user computes.
-  /// \throws InvalidInput for integrals of different sizes.
+  /// \throws InvalidInput for integrals that `FfrIntegrals::check` refuses, and for an invalid placement.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : placement_(options.placement), terms_(options.terms) {
     integrals.check("Ffr");
@@ -223,7 +223,7 @@ class Ffr {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX mv;  // energies are also evaluated within steps
+    static thread_local VecX mv;  // no allocation: energies are also evaluated within steps
     mv.resize(velocities());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), velocities()));

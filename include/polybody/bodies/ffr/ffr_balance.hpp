@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Inertia force M a and applied force of the body of a floating frame (equations in ffr.hpp). Both use the products in
-/// ffr_balance.hpp.
+/// Inertia force M a and the other forces of the body of a floating frame (equations in ffr.hpp).
 
 #include <span>
 
@@ -11,8 +10,8 @@
 
 namespace polybody {
 
-// Matrix products of the equations of a floating frame with coordinates, velocities and accelerations. The matrices
-// are stacked, so that each vector is read once.
+// Products of matrices with coordinates, velocities and accelerations in the equations of a floating frame. The
+// matrices are stacked, so that each vector is read once.
 
 /// Transposed matrices of `FfrIntegrals`, stacked one below the other, for n deformation coordinates.
 struct FfrStack {
@@ -38,7 +37,7 @@ struct FfrStack {
   }
 };
 
-/// Products of the matrices in one state, stored in a workspace of 15 n numbers.
+/// Products of the matrices of `FfrStack` with q, q̇ and q̈, stored in a workspace of 15 n numbers.
 template <class T>
 class FfrProducts {
  public:

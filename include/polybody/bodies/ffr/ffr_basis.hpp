@@ -18,7 +18,7 @@ namespace polybody {
 
 // Extraction and factorisation of submatrices of a structure.
 
-/// Submatrix of the given rows and columns of a sparse matrix.
+/// Submatrix of the sparse matrix m at the row indices `rows` and the column indices `columns`.
 template <class = void>  // compiled only if used
 Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const& rows,
                             std::vector<Index> const& columns) {

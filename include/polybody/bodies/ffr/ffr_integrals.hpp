@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
-/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or are given by the user.
+/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or the user provides them.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 
@@ -44,7 +44,7 @@ void times(MatX const& m, T const* x, T* out) {
 
 /// Integrals of the body of a floating frame, in the axes of the frame, for the points u = u₀ + S q:
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
-///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the origin,
+///   J(q) = inertia + [inertia_by_kl · q + qᵀ inertia_second_kl q]_kl, the inertia tensor about the origin,
 ///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
 ///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,
 ///   U = ½ qᵀ stiffness q + initial_force · q.
@@ -154,8 +154,8 @@ struct FfrIntegrals {
   /// First and second moment of the deformed body about the origin of its frame [kg m], [kg m²].
   template <class T>
   struct Moments {
-    Vec<T, 3> c;     ///< ∫ρ u
-    Mat<T, 3, 3> J;  ///< inertia tensor
+    Vec<T, 3> c;     ///< first moment ∫ρ u
+    Mat<T, 3, 3> J;  ///< inertia tensor about the origin
   };
 
   /// Moments c(q) and J(q) at q = x (n).

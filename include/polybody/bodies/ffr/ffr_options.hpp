@@ -13,7 +13,7 @@ namespace polybody {
 /// mass matrix is not symmetric. The linear solver must then read both triangles, as in `BlockSolver`; `BlockLdlt`
 /// and `EigenLdlt` read one.
 struct FfrTerms {
-  bool coupling = true;  ///< m_rf: C, H in both rows of the mass matrix; and ċ, Ċ q̇, H q̇, H˙ q̇ in the rows of the frame
+  bool coupling = true;  ///< m_rf: C and H in the mass matrix; ċ, Ċ q̇, H q̇ and H˙ q̇ in the rows of the frame
   bool onto_frame =
       true;  ///< the terms of `coupling` in the rows of the frame; if false, the deformation does not act on the frame
   bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body instead of those at q = 0, in inertia and weight
@@ -36,7 +36,7 @@ struct FfrTerms {
   /// Returns true if velocities of the deformation act on the frame.
   bool couples_frame_velocity() const { return couples_to_frame() && frame_velocities; }
   bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< true if J˙ acts on the frame
-  /// Selected part of ½ (J_p)_q, from the full derivative `slope` and its value `by` at q = 0.
+  /// Selected part of a derivative ∂J_p/∂q_k, from its value `slope` at q and its value `by` at q = 0.
   template <class T>
   T centrifugal_slope(T const& slope, double by) const {
     return (centrifugal ? slope - by : T(0.0)) + (spin ? by : 0.0);
@@ -64,7 +64,7 @@ struct FfrOptions {
   /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of both
   /// ends replace the nodal coordinates [Craig & Bampton 1968]. The resulting basis is suitable for joints at the ends.
   std::optional<Index> modes = {};
-  double stiffness_damping = 0.0;  ///< time [s]; the damping increases by this time × K
+  double stiffness_damping = 0.0;  ///< damping time τ [s]; adds τ K to the damping matrix
 
   /// Completes the options of a body from a bar: sets the placement, and the frame and the stiffening if they have no
   /// value.

@@ -278,7 +278,7 @@ class FfrPoints {
   Structure s_;
   MatX shapes_;
   std::optional<AxialForceStiffness> axial_;
-  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ, without stiffening
+  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ; empty with stiffening
 };
 
 }  // namespace polybody

@@ -66,7 +66,7 @@ class FfrTangent {
       k.block<3, 1>(3, 6 + i) += cd * spin_ * h;
     }
   }
-  /// Adds the terms with J, for each entry p of J: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
+  /// Adds the terms with J, for each entry p of J and each q_i: slope = ∂J_p/∂q_i, bent = ∂(J˙_p)/∂q_i.
   template <class = void>
   void add_inertia(double ck, double cd, MatX& k) {
     for (std::size_t p = 0; p < 6; ++p) {

@@ -11,10 +11,10 @@
 
 namespace polybody {
 
-/// Sparse matrix of size m×n from a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer,
-/// general or symmetric (its lower triangle). Eigen's unsupported loader returns half of a symmetric matrix and does
-/// not check indices, so this function does not use it. `need` is the end of the message "the matrix is 2×2, but the …"
-/// and explains the required size.
+/// Reads a sparse m×n matrix from a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer,
+/// general or symmetric. A symmetric matrix is given by its lower triangle. Eigen's unsupported loader is not used: it
+/// returns half of a symmetric matrix and does not check indices. `need` is the end of the message "the matrix is 2×2,
+/// but the …" and explains the required size.
 /// \throws IoError, with the line, for any other content.
 template <class = void>  // compiled only if used
 Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {

@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Name, for messages, of row or column i of a matrix with x, y, z of every node.
+/// Name of row or column i in messages, for a matrix whose rows and columns are x, y, z of every node.
 template <class = void>  // compiled only if used
 std::string coordinate_name(Index i) {
   return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"});
@@ -249,7 +249,7 @@ std::vector<Vec3> read_nodes(std::string const& file) {
 /// Structure from files. `mass_file` and `stiffness_file` are in the coordinate format of Matrix Market. `nodes_file`
 /// has a line `x y z` [m] for each node, in which # begins a comment.
 /// \throws IoError naming file and line for a file that cannot be read, is truncated or does not fit the nodes.
-/// \throws InvalidInput naming the files for the reasons given at `structure_of`, also for waves faster than
+/// \throws InvalidInput naming the files, in the same cases as `structure_of`, including waves faster than
 /// `fastest_wave` [m/s].
 template <class = void>
 Structure read_structure(std::string const& mass_file, std::string const& stiffness_file, std::string const& nodes_file,

@@ -29,7 +29,7 @@ class NodePatch {
   };
 
   /// Patch of `nodes`.
-  /// \param weights of the nodes, such as the area of each node; empty for equal weights.
+  /// \param weights one for each node, such as its area; empty for equal weights.
   /// \throws InvalidInput, with a message that begins with `who`, for nodes that do not exist, and for fewer than three
   /// nodes or nodes on one line. The weights must be positive, one for each node.
   template <class = void>

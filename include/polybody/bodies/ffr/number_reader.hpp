@@ -45,8 +45,8 @@ class NumberReader {
     }
     return !line.empty();
   }
-  /// Reads the numbers of the next line that has any into `values`. The line must contain nothing else; `expected`
-  /// describes its content in the message. Returns false at the end of the file.
+  /// Reads the numbers of the next line that is not empty into `values`. The line must contain nothing else; `expected`
+  /// describes the content of the line in the message. Returns false at the end of the file.
   /// \throws IoError for a line with other content.
   template <class... T>
   bool next(std::string const& expected, T&... values) {

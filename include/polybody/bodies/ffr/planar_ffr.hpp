@@ -23,7 +23,7 @@ class Ffr : public AddingCoordinates {
   static constexpr World world = World::plane;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< joints with `JointCoordinates` move it
+  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< order of the frame's coordinates
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
   static constexpr Index default_elements = 8;  ///< number of elements of `from(bar)`
@@ -70,7 +70,7 @@ class Ffr : public AddingCoordinates {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// Body from integrals that the user computes.
-  /// \throws InvalidInput for integrals of different sizes.
+  /// \throws InvalidInput for integrals that `FfrIntegrals::check` refuses, and for a placement that leaves the plane.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
     i_.check("planar::Ffr");
@@ -266,7 +266,7 @@ class Ffr : public AddingCoordinates {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX mv;  // energies are also evaluated within steps
+    static thread_local VecX mv;  // no allocation: energies are also evaluated within steps
     mv.resize(velocities());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), velocities()));

@@ -6,8 +6,8 @@
 
 namespace polybody::planar {
 
-/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame, for the
-/// points u = u₀ + S q:
+/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame. For the
+/// points u = u₀ + S q, with C = ∂c/∂q and the unit normal e of the plane:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
 ///   H = ∫ρ u × S = coupling + qᵀ coupling_by,
 ///   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.
@@ -100,7 +100,7 @@ struct FfrIntegrals {
       if (stiffens()) out.c[i] -= detail::quadratic<T>(first_second[std::size_t(i)], x, x) * 0.5;
     }
   }
-  /// Entry (i, k) of C at q = x.
+  /// Entry (i, k) of C = ∂c/∂q at q = x.
   template <class T>
   T first_slope(T const* x, int i, Index k) const {
     T sum(first_by(i, k));

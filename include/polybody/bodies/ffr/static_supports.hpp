@@ -6,10 +6,10 @@
 
 namespace polybody {
 
-/// Adds statically determinate supports to `frame`: conditions that prevent rigid motions without reaction forces
-/// within the structure. All coordinates of the first node a are held. If nodes have no rotations, two displacements
-/// across b − a of the node b farthest from a are also held. The third node is the one farthest from the line a–b; its
-/// displacement normal to the plane of the three nodes is held.
+/// Adds statically determinate supports to `frame`: conditions that prevent rigid motions without straining the
+/// structure. All coordinates of the first node a are held. If nodes have no rotations, two more nodes are held. Node b
+/// is farthest from a and is held along two coordinate axes: all but the one closest to the line a–b. Node c is
+/// farthest from this line and is held along the axis closest to the normal of the plane through a, b and c.
 template <class = void>  // compiled only if used
 ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame = {}) {
   for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);

@@ -30,7 +30,7 @@ struct Structure {
   /// Straight Euler–Bernoulli beam between two nodes. Beams are stored for strains and stresses, for material points
   /// between nodes, and for the geometric stiffness of an axial force.
   struct Beam {
-    Index a = 0, b = 0;      ///< nodes
+    Index a = 0, b = 0;      ///< indices of the nodes at the ends
     Mat3 axes;               ///< (3×3) columns: unit vectors along the beam, and along y, z of the section
     double length = 0.0;     ///< length of the beam [m]
     BarConstants constants;  ///< constants of the section

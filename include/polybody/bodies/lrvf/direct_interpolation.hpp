@@ -13,8 +13,8 @@ namespace polybody {
 /// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′ [thesis §2.3–2.5]. This policy is meant for comparison; `RelativeRotation` is recommended.
 /// The tests measure two faults:
 /// - The policy is not objective. The curvature and the energy of an element that bends by φ about one axis change if
-///   the element rotates rigidly about another axis. The relative changes are of order φ² (energy: 0.01 φ² after 2
-///   rad).
+///   the element rotates rigidly about another axis. The relative changes are of order φ²: 0.01 φ² for the energy after
+///   a rotation of 2 rad.
 /// - The rotation vector Ψ₁ of node 1 has |Ψ₁| ≤ π. Ψ₂ is the rotation vector Ψ of node 2 or its complement
 ///   Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1 passes |Ψ₁| = π, both vectors change to their complements. The
 ///   curvature then jumps by terms of order φ³/l, unless the element rotates about Ψ itself.

@@ -23,10 +23,10 @@ class Directors : public Polar {
 };
 
 namespace detail {
-/// Directors of one section, and the derivatives of their strains with respect to the nodes.
+/// Directors of one section, and the derivatives of Γ with respect to the rotations of the nodes.
 template <StateScalar T>
 struct DirectorSection {
-  Mat<T, 3, 3> directors;  ///< Λ
+  Mat<T, 3, 3> directors;  ///< directors Λ
   Mat<T, 3, 6> slide;      ///< H: δΓ = Λᵀ (δr₂ − δr₁)/c₀ + H (δθ₁, δθ₂)
 };
 }  // namespace detail

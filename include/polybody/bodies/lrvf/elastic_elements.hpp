@@ -24,7 +24,7 @@ namespace polybody {
 /// Strains of an element at one of its sections, in a state.
 template <StateScalar T>
 struct SectionStrains {
-  StrainSection<T> at;  ///< section, with its derivatives with respect to the nodes
+  StrainSection<T> at;  ///< section, with its derivatives with respect to the rotations of the nodes
   double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
   Vec<T, 3> gamma;      ///< Γ + Γ₀ = Rᵀ r′, with the axes R of the section
   Vec<T, 3> rate;       ///< Rᵀ ṙ′, for damping
@@ -140,7 +140,7 @@ class LrvfSection {
     Mat<T, 3, 3> nx;      ///< ∂N/∂x
     Mat<T, 3, 6> nt, mt;  ///< ∂N/∂θ, ∂M/∂θ
   };
-  /// Derivatives δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙ and, in the same form, δM of Q θ. With Γ˙ = u + Γ × Ω and
+  /// Derivative δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙, and δM in the same form with Q θ. With Γ˙ = u + Γ × Ω and
   /// u = Rᵀ (ṙ₂ − ṙ₁)/c₀:
   ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
@@ -243,9 +243,9 @@ class ElasticElements {
     });
   }
 
-  /// Force of element e from l Σ w (N·δΓ + M·δK), with δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l (Γ
-  /// including Γ₀):
-  /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points.
+  /// Force of element e from the virtual work l Σ w (N·δΓ + M·δK). With δθ₁₂ = (δθ₁, δθ₂), δθ = P δθ₁₂, δK = Q δθ₁₂/l
+  /// and δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, where Γ includes Γ₀, the sums over the points are
+  ///   f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M),  t = l N × Γ.
   /// The function also adds moment(i), the moment of the inertia forces on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {

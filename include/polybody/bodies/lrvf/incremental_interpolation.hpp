@@ -14,15 +14,15 @@ namespace polybody {
 ///   R⁺ = R exp(δ),  l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁).
 /// The derivatives at δ = 0 are
 ///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
-/// In the reference configuration R and l K are those of `RelativeRotation`. Forces are the gradient of the energy with
-/// respect to the rotations of the nodes: for every path, their work equals the loss of energy. The energy is not a
-/// function of the nodal coordinates. The tests measure three faults:
+/// In the reference configuration R and l K are those of `RelativeRotation`. Forces are the negative gradient of the
+/// energy with respect to the rotations of the nodes: for every path, their work equals the loss of energy. The energy
+/// is not a function of the nodal coordinates. The tests measure three faults:
 /// - The strains depend on the path, and shorter steps do not remove this dependence. After a closed path of the nodes
 ///   the element is bent, and its stress-free shape differs from the reference by terms of order l².
 /// - The strains depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` the
-///   increment of each Newton correction. While q ⊞ δ(t) moves with the angular velocities of the nodes, the middle
-///   rotates with ½ (Ω₁ + Ω₂) only at δ = 0. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best
-///   of second order in the step, for every integrator.
+///   increment of each Newton correction. If the nodes of q ⊞ δ(t) rotate with Ω₁ and Ω₂, the middle rotates with
+///   ½ (Ω₁ + Ω₂) only at δ = 0. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best of second
+///   order in the step, for every integrator.
 /// - The policy is not objective. If an element bent by φ about n rotates rigidly with ω ⊥ n, its middle rotates with
 ///   cos(φ/2) ω. The rate of l K is then (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
 /// User-defined coordinates must include the section in the middle; q ⊞ δ computes it.

@@ -204,15 +204,15 @@ class Lrvf {
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return section_.forces(section_strains(p, q));
   }
-  /// Rotation field at `p`, with its curvature including that of the reference.
+  /// Rotation field at `p`. Its curvature includes the curvature of the reference.
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const
     requires NodalInterpolation<Interpolation>
   {
     return interpolation_.turn(p.xi, l_, turned<double>(q, p.element), turned<double>(q, p.element + 1));
   }
 
-  /// Marker kinematics: r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias: ω˙ᵇ = R Ω˙ᵇ,
-  /// ω˙ᵇ × ρ + ω × (ω × ρ).
+  /// Marker kinematics: r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias = [ω˙ᵇ × ρ + ω × (ω × ρ); ω˙ᵇ],
+  /// where ω˙ᵇ is ω˙ for constant velocities of the nodes.
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {

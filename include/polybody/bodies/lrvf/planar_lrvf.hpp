@@ -52,7 +52,7 @@ struct SimoVuQuoc {
     return row;
   }
 
-  /// Angle θ(ξ) at the coordinates e (6). The field is linear, so that there is no bias.
+  /// Angle θ(ξ) at the coordinates e (6). The field is linear, so that θ̈ is zero for ë = 0.
   template <StateScalar T>
   static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
     Vec<T, 6> const row = rotary<T>(xi, l);
@@ -113,8 +113,8 @@ struct SimoVuQuoc {
   using Groups = std::tuple<Section>;  ///< strain laws of the beam
 };
 
-/// Law for some of the strains (ε, γ, κ) of a section: `count` of them, beginning at `first`. The points are those of Q
-/// at which the weight of the strains is not zero.
+/// Law for `count` successive strains of (ε, γ, κ), beginning at index `first`. The points are those of Q at which the
+/// weight of these strains is not zero.
 template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
   using All = SimoVuQuoc::Section;  ///< law of the three strains
@@ -160,7 +160,7 @@ struct SimoVuQuocBy : SimoVuQuoc {
   using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;  ///< one law for each strain
   using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;  ///< one law for ε and γ, another one for κ
   using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
-                                    std::conditional_t<together, Two, Three>>;  ///< fewest laws for the points
+                                    std::conditional_t<together, Two, Three>>;  ///< as few laws as Q permits
 };
 template <>
 struct SimoVuQuocBy<ReducedQuadrature> : SimoVuQuoc {};

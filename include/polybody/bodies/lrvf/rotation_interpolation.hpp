@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Section at which strains are evaluated, with its derivatives with respect to the nodes.
+/// Section at which strains are evaluated, with its derivatives with respect to the rotations of the nodes.
 template <StateScalar T>
 struct StrainSection {
   Mat<T, 3, 3> R;     ///< axes of the section in world axes
@@ -19,9 +19,9 @@ struct StrainSection {
 
 /// Derivatives of products with the maps P and Q of a `StrainSection` with respect to (δθ₁, δθ₂), for fixed t, m, w.
 struct StrainGradient {
-  Mat<double, 6, 6> pulled;  ///< of Pᵀ t + Qᵀ m
-  Mat<double, 3, 6> spin;    ///< of P w
-  Mat<double, 3, 6> bend;    ///< of Q w
+  Mat<double, 6, 6> pulled;  ///< derivative of Pᵀ t + Qᵀ m
+  Mat<double, 3, 6> spin;    ///< derivative of P w
+  Mat<double, 3, 6> bend;    ///< derivative of Q w
 };
 
 /// Any section of an element, with the map of its angular velocity. The class `Section` of a policy adds intermediate

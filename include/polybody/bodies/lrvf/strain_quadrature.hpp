@@ -82,14 +82,14 @@ struct FullQuadrature {
 };
 
 /// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear must be
-/// evaluated in the middle, because Γ₁ = u′ is constant. In general Γ₁ must be evaluated there as well: at points
-/// inclined by ψ ± φ/√12 to the chord, Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
-/// - The mean over both points decreases by φ²/24 under pure bending. The chord becomes longer by the same fraction,
-///   whereas the chord of an arc becomes shorter.
-/// - The difference of both points, 2 sin ψ sin(φ/√12), depends on the shear ψ: it adds EA φ²/12 to GA. On a curved
+/// evaluated in the middle, because Γ₁ = u′ is constant. In general Γ₁ must be evaluated there as well. At Gauss
+/// points, sections are inclined to the chord by ψ ± φ/√12, with the shear ψ, and Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
+/// - The mean of Γ₁ over both points decreases by φ²/24 under pure bending. The chord becomes longer by the same
+///   fraction, whereas the chord of an arc of constant length becomes shorter.
+/// - The difference of Γ₁ between both points, 2 sin ψ sin(φ/√12), depends on ψ: it adds EA φ²/12 to GA. On a curved
 ///   reference this also occurs in linear theory, with the angle φ₀ of the reference per element.
-/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. This quadrature is then equal
-/// to `ReducedQuadrature`; in space its cost is five to ten times higher.
+/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. The results then equal those
+/// of `ReducedQuadrature`; in space the cost is five to ten times higher.
 struct SelectiveQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 3> points = {

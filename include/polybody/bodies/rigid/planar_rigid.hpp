@@ -31,7 +31,7 @@ class Rigid : public AddingCoordinates {
     Placement placement = {};  ///< placement of the centre of mass
   };
 
-  /// Body with the given parameters.
+  /// Body with the mass, the inertia and the placement `p`.
   /// \throws InvalidInput for mass ≤ 0, inertia < 0 or a placement that leaves the plane.
   template <class = void>     // compiled only if used
   Rigid(Parameters const& p)  // NOLINT(google-explicit-constructor)

@@ -92,7 +92,7 @@ class RigidShape {
     Placement placement = {};     ///< placement of the centre of mass and of the axes of the body
   };
 
-  /// Body with the given parameters. Moments of inertia may be zero.
+  /// Body with the mass properties and the placement `p`. Moments of inertia may be zero.
   /// \throws InvalidInput for mass ≤ 0, an inertia tensor that no distribution of mass has, or an invalid placement.
   template <class = void>  // compiled only if used
   RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
@@ -286,7 +286,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// Tangent −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  /// Tangent cd (−∂f/∂Ω) with −∂f/∂Ω = Ω̃ J − (J Ω)~.
   template <class T>  // compiled only if used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]);

@@ -47,7 +47,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
   }
-  /// Generalised velocities of a rigid motion: ṙ = v0 + Ω × r with Ω = `omega`, θ̇ = ¼ |θ|² Ḡᵀ Ω.
+  /// Generalised velocities of a rigid motion with ω = `omega` in world axes: ṙ = v0 + ω × r, θ̇ = ¼ |θ|² Ḡᵀ Aᵀ ω.
   template <class T = double>  // compiled only if used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     Vec<T, 3> const r = part<3>(q, 0);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Kinematics of a marker on a rigid body, computed in SIMD registers. Every evaluation computes all markers of a
-/// model.
+/// Kinematics of a marker on a rigid body. They are computed in SIMD registers, because every evaluation of a model
+/// computes them for every marker.
 
 #include <polybody/kinematics/marker_kinematics.hpp>
 #include <polybody/math/vec3_storage.hpp>

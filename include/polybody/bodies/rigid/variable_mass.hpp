@@ -17,7 +17,7 @@ namespace polybody {
 ///
 /// The equation M(t) v̇ = f is valid if mass leaves or arrives with the velocity of the body at that point. Mass that
 /// leaves with another velocity exerts a force on the body: −ṁ u for a stream of ṁ [kg/s] at u [m/s] relative to the
-/// body. Apply this force by a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are
+/// body. Apply this force with a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are
 /// computed with the mass at the time of the state.
 template <Body B>
 class VariableMass : public B {

@@ -40,8 +40,8 @@ struct BarConstants {
   double rotary_inertia = 0.0;                  ///< Iρ about z, per length [kg m]
   std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; EI if not given
   std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; GA if not given
-  std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; `rotary_inertia` if not given
-  std::optional<double> polar_inertia = {};     ///< about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
+  std::optional<double> rotary_inertia_y = {};  ///< Iρ about y, per length [kg m]; `rotary_inertia` if not given
+  std::optional<double> polar_inertia = {};     ///< Iρ about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
 };
 
 /// Rotary inertias Iρ of a section about x (the axis of the bar), y and z, per length [kg m].
@@ -53,22 +53,22 @@ Vec3 rotary_inertias(BarConstants const& c) {
 
 /// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate). Rigid motions of the bar cause no damping.
 struct Damping {
-  double axial = 0.0;    ///< time of the axial strain [s]
-  double shear = 0.0;    ///< time of shear and torsion [s]
-  double bending = 0.0;  ///< time of the curvatures [s]
+  double axial = 0.0;    ///< damping time of the axial strain [s]
+  double shear = 0.0;    ///< damping time of shear and torsion [s]
+  double bending = 0.0;  ///< damping time of the curvatures [s]
 };
 
 /// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. Its
 /// data are either `section` and `material`, or `constants`.
 struct Bar {
   Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
-  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar is given by `constants`
+  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar has `constants`
   std::optional<Material> material = {};                         ///< material of the section
-  std::optional<BarConstants> constants = {};                    ///< instead of section and material
-  Placement placement = {};                 ///< placement of the first end; the bar lies along its x axis
+  std::optional<BarConstants> constants = {};                    ///< constants that replace section and material
+  Placement placement = {};                 ///< placement of the first end; the axis of the bar is its x axis
   Damping damping = {};                     ///< damping of the material
   double pretension = 0.0;                  ///< axial force in the reference configuration [N]
-  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; by Cowper's formula if not given
+  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; default: Cowper's formula
 };
 
 /// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body type accepts a mesh. The number

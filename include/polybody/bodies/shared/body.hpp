@@ -43,7 +43,7 @@ concept HasRigidLayout = requires {
 
 /// Body that deforms relative to a frame which joints with `JointCoordinates` can move. The coordinates and generalised
 /// velocities of the frame come first, in the order `frame_layout`. The coordinates of the deformation follow and form
-/// a vector space. The sizes of all markers are known only at run time.
+/// a vector space. The number of columns of a marker is known only at run time.
 template <class B>
 concept FloatingFrameBody = requires(B const b) {
   { B::frame_layout } -> std::convertible_to<RigidLayout>;
@@ -151,8 +151,8 @@ concept HasBodyResidual =
 /// time. Otherwise it is stored with the data of the body, so that no step allocates memory.
 template <class B, class T>
 struct ForceScratch {
-  Vec<T, B::element_columns> x, force, weight;  ///< of an element: residual M a − f, force f and weight
-  VecXOf<T> workspace;                          ///< for a body with a function `residual`
+  Vec<T, B::element_columns> x, force, weight;  ///< residual M a − f, force f and weight of an element
+  VecXOf<T> workspace;                          ///< workspace of `residual`, if the body has this function
   /// Sets the sizes that are known only at run time.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)

@@ -18,7 +18,7 @@ template <class B>
 concept IdenticalElements =
     requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
              Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
-      requires B::vectorised_kernels;                     // true for arithmetic, false for sines (measured)
+      requires B::vectorised_kernels;                     // false for kernels with sines, by measurement
       { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
       b.template element_inertia<SimdVector<>>(x, out);
       b.template element_force<SimdVector<>>(x, x, out);
@@ -95,7 +95,7 @@ bool are_alike(B const& body) {
     return IdenticalElements<B>;
 }
 
-/// Index after the last element of a range that is processed in SIMD vectors. Each SIMD vector begins at a multiple of
+/// Index after the last element of `range` that a SIMD vector processes. Each SIMD vector begins at a multiple of
 /// `simd_size`, so that the kernel of an element does not depend on the subdivision of a loop.
 template <class B>
 Index batches_end(B const& body, ElementRange range) {

@@ -47,7 +47,7 @@ class NodeChain : public AddingCoordinates {
   }
 
  protected:
-  explicit NodeChain(Index n) : n_(n) {}  ///< n elements
+  explicit NodeChain(Index n) : n_(n) {}  ///< chain of n elements
   Index n_;                               ///< number of elements
 };
 

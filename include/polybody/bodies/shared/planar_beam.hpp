@@ -38,7 +38,7 @@ template <StateScalar T>
 struct CentreLine {
   Vec<T, 2> r;  ///< position [m]
   Vec<T, 2> v;  ///< velocity [m/s]
-  T angle;      ///< from world x to the normal of the section [rad]
+  T angle;      ///< angle from world x to the normal of the section [rad]
   T rate;       ///< rate of the angle [rad/s]
   T rate_bias;  ///< second derivative of the angle for ë = 0 [rad/s²]
 };
@@ -110,8 +110,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, with the strains ε⁰ of the elements whose nodes are on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
   /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
-  /// or is not parameterised by its arc length. The length of the axis of an element may differ from the arc length by
-  /// 10 %.
+  /// or is not parameterised by its arc length. The axial strain of an element relative to
+  /// the arc length must lie in (−0.1, 0.1).
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
@@ -263,12 +263,12 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return group.stress(strains_of(group, p, q)); });
   }
-  /// Strains of the group with number G in the theory, at `p`, relative to the undeformed shape.
+  /// Strains of group G of the theory (counted from 0) at `p`, relative to the undeformed shape.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
     return strains_of(std::get<G>(this->groups_of(p.element)), p, q);
   }
-  /// Stress resultants of the group with number G in the theory, without damping [N], [N m].
+  /// Stress resultants of group G of the theory (counted from 0) at `p`, without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
     return std::get<G>(this->groups_of(p.element)).stress(strains<G>(p, q));

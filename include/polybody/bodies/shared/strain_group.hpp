@@ -10,8 +10,8 @@ namespace polybody {
 
 /// Force and tangent of an element from the strains of a law. The energy is
 ///   U = ½ ∫ Σ_i C_i (ε_i(p) − ε⁰_i)² dx,  with the parameters p = P(x) e of the group.
-/// The parameters are linear in the coordinates e of the element. ε⁰ are the strains in the stress-free state (zero
-/// unless given). With the damping times τ_i (Kelvin–Voigt) and the initial stress n⁰, the stress is n_i = C_i (ε_i −
+/// The parameters are linear in the coordinates e of the element. ε⁰ are the strains in the stress-free state, zero by
+/// default. With the damping times τ_i (Kelvin–Voigt) and the initial stress n⁰, the stress is n_i = C_i (ε_i −
 /// ε⁰_i + τ_i ε̇_i) + n⁰_i. With B = ∂ε/∂p and H_i = ∂²ε_i/∂p²,
 ///   f = −∫ Pᵀ Bᵀ n dx,
 ///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
@@ -29,7 +29,7 @@ class StrainGroup : public StrainPoints<Law> {
   using Points::np, Points::m, Points::Points;
   using typename Points::P;  ///< map from e to p
   template <class T, int n>
-  using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
+  using Coordinates = typename P::template Coordinates<T, n>;  ///< coordinates ê of an element (`StrainMap`)
 
   /// Adds the force of the group at coordinates x and velocities xd, f += f(x, xd).
   template <KernelScalar T, int n>
@@ -61,8 +61,8 @@ class StrainGroup : public StrainPoints<Law> {
 
   // `tangent_of` assembles the tangent from all groups of an element: it calls `prepare` once, then `add_block` for
   // each block.
-  /// Data for the blocks of the tangent: the stiffness h of each point with respect to p. For quadratic strains, the
-  /// tangent K̂ with respect to the nodal vectors that the strains read.
+  /// Data for the blocks of the tangent: the stiffness h of each point with respect to p. Quadratic strains have the
+  /// tangent K̂ instead, with respect to the nodal vectors that they read.
   template <KernelScalar T>
   struct Prepared {
     using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;                ///< h of each point
@@ -70,11 +70,11 @@ class StrainGroup : public StrainPoints<Law> {
     Prepared() {}  // NOLINT(modernize-use-equals-default): a defaulted constructor would fill the matrices with zeros
   };
 
-  /// Prepares the blocks of the tangent of quadratic strains,
+  /// Computes the tangent K̂ of quadratic strains, with N of `StrainMap` and S_i of `QuadraticStrains`:
   ///   K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st,
   ///   β = B P,  γ = w C [ck B + τ (ck Ḃ + cd B)] P,  Ḃ_i = H_i ṗ,  σ = ck w Σ n_i S_i.
-  /// If few strains read many vectors, this is less work than Pᵀ h P. The loop processes a few points at a time, so
-  /// that their data fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
+  /// If few strains read many vectors, this takes fewer operations than Pᵀ h P. The loop processes a few points at a
+  /// time, so that their data fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic
@@ -197,12 +197,12 @@ class StrainGroup : public StrainPoints<Law> {
   }
 
  private:
-  /// Strains of a point and their derivatives during a motion.
+  /// Parameters p and strains at a point, their rates, and the derivative B of the strains.
   template <class T>
   struct Moving {
     Vec<T, np> p, pd;
     Vec<T, m> strain, rate;
-    Mat<T, m, np> b;  ///< B
+    Mat<T, m, np> b;  ///< B = ∂ε/∂p
   };
 
   /// Strain rates ε̇ = B ṗ.
@@ -219,7 +219,7 @@ class StrainGroup : public StrainPoints<Law> {
     return rate;
   }
 
-  /// Adds the damping, strain += τ P_ε ε̇.
+  /// Adds the damping term to the strains: strain += τ P_ε ε̇.
   template <class T>
   void add_damping(Vec<T, m> rate, Vec<T, m>& strain) const {
     if constexpr (HasObjectiveRate<Law>) Law::template objective_rate<T>(strain, rate);

@@ -24,7 +24,7 @@ concept StrainFunctions = requires(Vec<double, L::parameters> const p, Vec<doubl
   requires L::parameters % L::components == 0;      // parameters are vectors with `components` entries, the shapes
   { L::vector(0, 0) } -> std::convertible_to<int>;  // j-th nodal vector that shape s reads; −1 if it reads fewer
   L::template evaluate<double>(p, e, b);            // ε and B
-  requires QuadraticStrains<L> || requires { L::template add_hessian<double>(p, e, h); };  // h += Σ n_i H_i for given n
+  requires QuadraticStrains<L> || requires { L::template add_hessian<double>(p, e, h); };  // h += Σ n_i H_i for n = e
 };
 
 /// Strains with a parameter map along the axis of a bar, a stiffness and a damping.

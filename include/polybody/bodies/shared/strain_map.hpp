@@ -11,9 +11,9 @@
 namespace polybody {
 
 /// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point, and
-/// products with it. The parameters of a law are vectors of d = `components` entries, the shapes; np is the number of
-/// all entries. Shape s reads at most `reach` nodal vectors. Vector number j of shape s is e_v with v = `vector(s, j)`.
-/// One factor N_sj multiplies all its components:
+/// products with P. The parameters of a law form vectors of d = `components` entries, called shapes; np is the total
+/// number of entries. Shape s reads at most `reach` nodal vectors. Vector number j of shape s is e_v with v =
+/// `vector(s, j)`. One factor N_sj multiplies all components of e_v:
 ///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
 /// ê_v = e_v, except for the vector `difference` of a law: ê_v = e_v − e_0. Strains do not depend on the position of an
 /// element. The factors of the positions of its two ends are therefore opposite, and the difference replaces both
@@ -23,7 +23,7 @@ namespace polybody {
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< sizes
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< sizes of P
 
   using Factors = Mat<double, shapes, reach>;  ///< matrix of the factors N
   template <class T>
@@ -52,8 +52,8 @@ class StrainMap {
   template <class T, int n>
   struct Coordinates {
     Vec<T, n> const& e;  ///< must outlive this object
-    Vec<T, d> step;      ///< difference e_v − e_0
-    /// Computes the difference for x.
+    Vec<T, d> step;      ///< difference e_v − e_0; e_0 if the law has no `difference`
+    /// Computes the difference from the coordinates x. x must outlive this object.
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
     }
@@ -86,8 +86,8 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// Adds the force `step` on the difference e_v − e_0 to f: to the force on e_v, and with the opposite sign to that on
-  /// e_0.
+  /// Distributes the force `step` on the difference e_v − e_0: adds it to the force on e_v in f, and subtracts it from
+  /// the force on e_0.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)

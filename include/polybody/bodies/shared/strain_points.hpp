@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quadrature points of a group of strains (see strain_group.hpp): strain energy, and the discrete-gradient force,
-/// whose work over a step equals the change of the energy.
+/// Quadrature points of a group of strains (strain_group.hpp): strain energy, and the discrete-gradient force. Without
+/// dissipation, the work of this force over a step is the negative change of the energy.
 
 #include <array>
 
@@ -20,9 +20,9 @@ class StrainPoints {
   static constexpr int np = Law::parameters, m = Law::strains;  ///< number of parameters and of strains
 
   using P = StrainMap<Law>;         ///< map from e to p
-  using Map = typename P::Factors;  ///< N at a point
+  using Map = typename P::Factors;  ///< factors N of P at a point
   template <class T, int n>
-  using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
+  using Coordinates = typename P::template Coordinates<T, n>;  ///< coordinates ê of an element (`StrainMap`)
   using Strains = Vec<double, m>;                              ///< one number for each strain
 
   StrainPoints() = default;
@@ -34,7 +34,7 @@ class StrainPoints {
     initial_ = initial;
     for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
-  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each of them.
+  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each point.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
@@ -98,7 +98,7 @@ class StrainPoints {
   /// 1996]:
   ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
-  /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
+  /// Strains that are components of a rotating vector enter through their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
   /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The term of `decay` then exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
@@ -183,15 +183,15 @@ class StrainPoints {
  protected:
   static constexpr bool quadratic = QuadraticStrains<Law>;  ///< true if the strains are quadratic in the parameters
 
-  Strains stiffness_ = Strains::Zero();             ///< C
-  Strains time_ = Strains::Zero();                  ///< τ [s]
-  Strains initial_ = Strains::Zero();               ///< n⁰
+  Strains stiffness_ = Strains::Zero();             ///< stiffness C
+  Strains time_ = Strains::Zero();                  ///< damping times τ [s]
+  Strains initial_ = Strains::Zero();               ///< initial stress n⁰
   bool damped_ = false;                             ///< true if any τ is not zero
-  std::array<Map, std::size_t(Law::points)> maps_;  ///< N
+  std::array<Map, std::size_t(Law::points)> maps_;  ///< factors N of each point
   /// Product of the two factors of each pair (`StrainMap::Pair`), at each point.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
   std::array<double, Law::points> weights_;  ///< weight of each point [m]
-  std::array<Strains, Law::points> free_;    ///< ε⁰
+  std::array<Strains, Law::points> free_;    ///< stress-free strains ε⁰ of each point
 };
 
 }  // namespace polybody

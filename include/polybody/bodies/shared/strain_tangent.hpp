@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Tangent of an element from all its strain groups, block by block of nodal vectors, so that each entry is written
-/// once.
+/// Tangent of an element from all its strain groups, in blocks for pairs of nodal vectors. Each entry is written once.
 
 #include <tuple>
 #include <utility>
@@ -11,7 +10,8 @@
 namespace polybody {
 
 namespace detail {
-/// Sets block (v, w) of k to `block`, or to its negative. If `mirror`, also sets the transposed block.
+/// Sets block (v, w) of k to `block`, or to −`block` if `negative`. If `mirror`, also sets block (w, v) to the
+/// transpose.
 template <bool negative, class T, int d, int n>
 void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n>& k) {
   T* const at = k.data() + d * (v + n * w);
@@ -29,8 +29,8 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }  // namespace detail
 
 /// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping the tangent is symmetric, and
-/// only the blocks on and below the diagonal are computed. The blocks of the first vector are the negative blocks of
-/// the vector that is read relative to it (`StrainMap`).
+/// only the blocks on and below the diagonal are computed. The blocks of the first nodal vector are the negative
+/// blocks of the vector that is read relative to it (`StrainMap`).
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,
                 Mat<T, n, n>& k) {
@@ -58,7 +58,7 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
       if (v == difference && w == difference) detail::set_block<false, T, d, n>(0, 0, block, false, k);
     }
   };
-  if constexpr (d == 1) {  // few entries, most of a single product: the compiler finds them if the loops are unrolled
+  if constexpr (d == 1) {  // few entries, most with a single product, which the compiler finds in unrolled loops
 #pragma GCC unroll 8
     for (int v = first; v < n; ++v)
 #pragma GCC unroll 8

@@ -24,7 +24,7 @@ concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const
 
 /// Index of a slider on its body.
 struct Slider {
-  Index index = 0;  ///< counted from 0
+  Index index = 0;  ///< index of the slider, counted from 0
 };
 
 /// Cable or beam with sliders: `WithSliders(AncfCable<>::from(bar, n), {s₁, …})`, where s [m] are the initial positions
@@ -37,9 +37,9 @@ struct Slider {
 /// linear solver reports this.
 ///
 /// A slider depends on all columns of the body, because its element changes with s. Its Jacobian rows are therefore as
-/// long as the body, and its load stiffness is dense. At a node r″ jumps, and with it the accelerations. Beyond an end
-/// of the body, the cubic of the last element continues for one element length, so that a step can end there.
-/// run/sliders.hpp has an event for the end.
+/// long as the body, and its load stiffness is dense. At a node, r″ and the accelerations jump. Beyond an end of the
+/// body, the cubic of the last element continues for one element length, so that a step may end there.
+/// run/sliders.hpp has an event at the end of the body.
 template <Body B>
 class WithSliders : public B {
   static_assert(SmoothAxis<B>,
@@ -80,7 +80,7 @@ class WithSliders : public B {
   /// Marker on `slider`, a point without axes.
   /// \throws InvalidInput for a slider that the body does not have.
   Point at(Slider slider) const { return {{}, column_of(slider)}; }
-  /// Kinematics that a marker at p has: `observes` for a material point, a point without axes for a slider.
+  /// Kind of a marker at p: `observes` for a material point, a point without axes for a slider.
   static MarkerKind observes_at(Point const& p) { return p.slider < 0 ? observes : MarkerKind::point; }
 
   Index coordinates() const { return B::coordinates() + sliders(); }
