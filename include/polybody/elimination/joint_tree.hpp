@@ -56,7 +56,7 @@ void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>
     }
   }
 }
-/// Sorts columns that were computed from the last motion to the first into the order of the coordinates.
+/// Sorts columns into the order of the coordinates, if they were computed from the last motion to the first.
 template <class T>
 void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
   Mat<T, 6, 6> const back = f.s;

@@ -15,7 +15,7 @@ namespace polybody {
 /// Constants of a joint with a single rotation by x. Its axis is n in the parent's axes. In space, the quaternion from
 /// the parent's axes to those of the body is `still` cos(x/2) + `turning` sin(x/2).
 struct JointTurn {
-  bool only = false;                                      ///< true if the joint is of this kind
+  bool only = false;                                      ///< true if the joint permits only this rotation
   Vec<double, 3> axis{0, 0, 0};                           ///< n, unit vector in the parent's axes
   Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the rotation, (w, x, y, z)
 };

@@ -200,7 +200,7 @@ class ConstraintDerivatives {
       k += in_tree_ ? std::size_t(count) : 1;
     }
   }
-  /// True if `write` counts rows from the first equation of all, not from the first constraint equation.
+  /// True if `row0` of `write` is the row of the first equation, not of the first constraint equation.
   bool counts_equations() const { return in_tree_; }
 
  private:

@@ -24,8 +24,8 @@ struct ConstraintFeedback {
 struct ConstraintGain {
   double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1 [1]
   std::size_t dropped = 0;  ///< number of redundant constraint equations
-  /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or changes are
-  /// ten times as large.
+  /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or `moved` is
+  /// more than ten times as large.
   bool far_above(ConstraintGain const& usual) const { return dropped > usual.dropped || moved > 10.0 * usual.moved; }
 };
 

@@ -203,7 +203,7 @@ class SparsePartitionOf {
   Sequence<bool> left_out_;
   std::vector<Eigen::Triplet<T>> entries_, some_;
   Matrix g_, gd_;
-  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // cannot be moved
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // a pointer, because Lu cannot be moved
   Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< place: index in dependents_ or kept_rows_
   T largest_entry_ = 0.0;
   MatXOf<T> r_;

@@ -123,7 +123,7 @@ class RunDriver {
     std::size_t passed = 0;
     bool searched = false;  // events were evaluated in this step
   };
-  /// Steps of the search for events, from the start of the step.
+  /// Parts of one trial step in the search for events, from the start of the step of the run.
   struct Trial {
     double end = 0.0;
     Sequence<double> lengths = {};

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Low-pass filter without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums;
+/// Low-pass filter (without phase shift) and amplitude spectrum of equally spaced samples, both by Fourier sums;
 /// resampling at equal steps.
 
 #include <algorithm>
