@@ -124,7 +124,7 @@ class SharedEquations {
 
 /// Derivatives ∂r/∂p and ∂Φ/∂p of the equations of a step with respect to all parameters, by differences. The
 /// differences also reveal equations that a parameter changes although `Parameter::affects` does not name their objects
-/// (gradients/equation_derivatives.hpp). \tparam V PerturbedModel or PerturbedStageModel
+/// (`SharedEquations`). \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class EquationDerivatives {
  public:

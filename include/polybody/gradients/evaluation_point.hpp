@@ -93,9 +93,9 @@ concept HasStageDerivatives = requires { typename I::Derivatives::template Linea
 
 /// Step of a run.
 struct StepTaken {
-  State const& before;  ///< state at its start
-  State const& after;   ///< state at its end
-  double h;             ///< its length [s]
+  State const& before;  ///< state at the start of the step
+  State const& after;   ///< state at the end of the step
+  double h;             ///< length of the step [s]
 };
 
 }  // namespace polybody

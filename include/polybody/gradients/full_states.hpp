@@ -52,7 +52,7 @@ template <class V>
   }
 }
 
-/// Applies the actions of the events that were met last to the full state x. Returns the reduced state of the model v.
+/// Applies the actions of the events that occurred last to the full state x. Returns the reduced state of the model v.
 /// \throws InvalidInput if the state after an action is invalid (see `act`).
 template <class V>
 [[gnu::cold]] State acted_state(V& v, EventDetector const& watch, State x) {

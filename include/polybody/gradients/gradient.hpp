@@ -195,7 +195,7 @@ class AdjointRun {
     add_to_derivatives([&](V& v) { return term(v.scenario.end, v.scenario.model, v.full_state(last)); });
     add_integrand(run_.steps().size(), last, bar);
   }
-  /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
+  /// Adds the weighted integrand at x, which is state number k, to J, and its derivatives to `bar` and dJ/dp.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
