@@ -19,7 +19,8 @@
 
 namespace polybody::detail {
 
-// Check that each equation depends only on the parameter that names it, if parameters are perturbed together.
+// Check that each equation depends only on the parameter whose `affects` names its object, if parameters are perturbed
+// together.
 
 /// Difference points (`FourPoints`) of the four models of a group, for one member.
 using MemberOrder = std::array<std::uint8_t, 4>;

@@ -23,7 +23,7 @@ template <class M, StateScalar T>
 class FullStates<M, T> {
  public:
   [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
-  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints in joint
+  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints with joint
   /// coordinates are evaluated from the equations, because their estimates in x have no derivatives.
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;

@@ -188,8 +188,8 @@ struct AlphaMethod {
       for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
-  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns the index of
-  /// the unknown without a pivot, or −1.
+  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns −1 on
+  /// success, otherwise the index of the unknown without a pivot.
   template <class Solver>
   Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
                  bool surrogate_friction = true) const {

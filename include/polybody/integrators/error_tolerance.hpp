@@ -93,7 +93,7 @@ class AssemblyExtents {
 
   Sequence<Box> boxes_;
   Sequence<Point> positions_, velocities_;            // of a time step
-  Sequence<Point> full_positions_, full_velocities_;  // of floating trees: a step has the coordinates of the root only
+  Sequence<Point> full_positions_, full_velocities_;  // of trees not joined to the ground: a step has only their root
   VecX full_q_, full_v_;
 };
 

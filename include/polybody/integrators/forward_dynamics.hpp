@@ -296,7 +296,7 @@ class ForwardDynamics {
     return bad < 0 && first_not_finite(a) < 0;
   }
 
-  /// Solver of [M, Gᵀ; G, 0]; one that factorises constant parts of the matrix only once, if there are such parts.
+  /// Solver of [M, Gᵀ; G, 0]. If the matrix has constant parts, the solver factorises them only once.
   [[gnu::cold]] static std::unique_ptr<LinearEquations> solver_for(System& system) {
     Sequence<bool> constant = detail::constant_unknowns(system);
     bool const changes = system.rows() > 0 || !has_constant_mass(system);

@@ -86,7 +86,7 @@ struct StepCheck {
   }
 };
 
-/// Trial of a step with a workspace. Without `keep`, its destructor restores the energy account of `StepCheck::bounds`
+/// Trial of a step with a workspace. Without `keep`, the destructor restores the energy account of `StepCheck::bounds`
 /// and the elimination order of `forward`, so that a repeated step is bitwise identical.
 template <class Workspace>
 class StepTrial {

@@ -185,8 +185,8 @@ class SparsePartitionOf {
     }
     return changed;
   }
-  /// Updates R after the exchange of the dependent column for row `row` of R with the independent column for column
-  /// `col`.
+  /// Updates R after an exchange of two columns of G: the dependent one of row `row` of R, and the independent one of
+  /// column `col` of R.
   void pivot(Index row, Index col) {
     T const inverse = 1.0 / r_(row, col);
     r_.row(row) *= inverse;

@@ -102,7 +102,8 @@ class RunDriver {
   template <class Run>
   StepReport halving_step(State& x, double h, int halvings, Run& run);
 
-  /// Stores step length, row of steps and signs of events in a snapshot. The run then continues as a resumed run.
+  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues as a
+  /// resumed run.
   [[gnu::cold]] void store(RunSnapshot& to) {
     events_.forget();
     to.step = h_;

@@ -38,7 +38,7 @@ double equal_step(std::span<double const> times, std::string const& who) {
 }
 
 using HalfSpectrum =
-    std::vector<std::complex<double>>;  ///< coefficients of the frequencies 0, 1/T, … up to the Nyquist frequency
+    std::vector<std::complex<double>>;  ///< coefficients of frequencies 0, 1/T, … up to Nyquist's, with the period T
 
 template <class = void>
 HalfSpectrum fourier_terms(std::vector<double> const& values) {
