@@ -224,7 +224,7 @@ class ArticulatedBodySolverOf {
   ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   Sequence<Node> nodes_;
-  Sequence<Index> owner_, row_of_;  // body of each full velocity; index in the remaining equations
+  Sequence<Index> owner_, row_of_;  // body of each full velocity; index of each equation among the remaining ones
   Sequence<Sequence<Vec6>> rows_;   // G: a row per remaining equation and body
   MatX answers_, schur_;
   VecX open_, lambda_, none_;

@@ -146,7 +146,7 @@ template <class = void>
 
 namespace detail {
 
-/// Computes the frame f of a body on a joint with a single rotation from the frame p of the parent. \param x, u angle
+/// Computes the frame f of a body from the frame p of its parent, for a joint with a single rotation. \param x, u angle
 /// [rad] and its rate [rad/s]
 template <class T>
 void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T const& u, TreeFrameOf<T>& f) {

@@ -26,8 +26,8 @@ struct EvaluationPoint {
   double t = 0.0;       ///< time [s]
   EquationTerms terms;  ///< factors of the terms of the equations
   VecXOf<T> also;       ///< (nv) accelerations added to a in the constraint equations; empty if there are none
-  VecXOf<T> a;          ///< (nv) accelerations: the solution
-  VecXOf<T> lambda;     ///< (rows) multipliers: the solution
+  VecXOf<T> a;          ///< (nv) accelerations of the solution
+  VecXOf<T> lambda;     ///< (rows) multipliers of the solution
 };
 
 /// Residuals of the linear equations of motion and of the constraint equations at an evaluation point.

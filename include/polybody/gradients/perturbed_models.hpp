@@ -230,7 +230,7 @@ class PerturbedModels {
     double dt;           ///< derivative of the time of x [s]
     std::size_t number;  ///< number of the point in the step, in ascending order
   };
-  /// Stores the derivatives of the equations r and Φ at a point with respect to parameter j in `sum`. The unknowns are
+  /// Stores in `sum` the derivatives of the equations r and Φ at a point with respect to parameter j. The unknowns are
   /// fixed; the time of the point changes with the parameter.
   template <class X>
   void of_equations(std::size_t j, PointInStep<X> const& at, EquationDerivative& sum) {

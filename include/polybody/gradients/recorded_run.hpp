@@ -238,7 +238,7 @@ class RecordedRun {
 
   V* full_;
   RunReport* report_;
-  bool interrupted_, computes_;  // the run has events or breakpoints; its steps are computed
+  bool interrupted_, computes_;  // true if events and breakpoints are handled; true if steps are computed
   RunDriver driver_;
   State first_, x_, far_;  // state before the first step; present state; end of a step before the search for events
   StepPlan::Next next_{};

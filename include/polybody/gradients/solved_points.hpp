@@ -64,7 +64,7 @@ class SolutionPoints {
   }
   /// Largest absolute residual of the constraint equations for a = 0 at the last point.
   double largest_row() const { return largest_size(equations_.rows); }
-  /// Redundant equations at the last point.
+  /// Indices of the redundant constraint equations at the last point.
   std::span<Index const> dropped() const { return found_[used_ - 1]->factors.dropped(); }
 
  private:
@@ -112,7 +112,7 @@ class SolvedPoints {
   void solve(EvaluationPoint<>& x) { found_.solve(x); }
   /// Largest absolute residual of the constraint equations for a = 0 at the last point.
   double largest_row() const { return found_.largest_row(); }
-  /// Redundant equations at the last point.
+  /// Indices of the redundant constraint equations at the last point.
   std::span<Index const> dropped() const { return found_.dropped(); }
 
   /// Sets a and λ of x to the solution of the next point, with its derivatives. q, v and `also` of x contain

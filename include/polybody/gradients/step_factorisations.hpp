@@ -31,7 +31,7 @@ enum class ApproximateFactors {
 /// sufficient. The trial is repeated every hundred steps.
 class PreconditionerChoice {
  public:
-  /// Candidate for the choice.
+  /// Kind of factorisation with its cost.
   struct Candidate {
     ApproximateFactors factors;  ///< kind of factorisation
     double cost;                 ///< cost of the factorisation [passes with their solutions]

@@ -69,9 +69,8 @@ struct EventStep {
     return x;
   }
   /// Time [s] from the start of the step to a state in which the event value does not have the sign `side`, although it
-  /// has this sign at both ends of the step; 0 if none is found. x is the state at the end of the step. The extremum of
-  /// the value is estimated from its values and rates at the ends of an interval by a cubic, in at most five
-  /// iterations.
+  /// has this sign at both ends of the step; 0 if none is found. x is the state at the end of the step. A cubic through
+  /// the values and rates at the ends of an interval estimates the extremum, in at most five iterations.
   [[gnu::cold]] double turn(Event const& event, int side, State const& x) const {
     if (side != 1 && side != -1) return 0.0;
     auto const value = [&](State const& y) { return side * event.value(motion.seen(y)); };
@@ -123,7 +122,7 @@ struct EventPlace {
   bool rests() const { return side == 2 || side == -2; }  ///< true if the value is held at zero
   /// Sign of the value `y`: −1, 0 or 1.
   static int sign(double y) { return (y > 0.0) - (y < 0.0); }
-  /// True if the value y has left the stored side. False for an unknown side.
+  /// True if the sign of the value y differs from the stored sign. False if the stored sign is unknown.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
   /// True if the value may have crossed zero twice within a step of length h [s] that ends with the value `now`. The
   /// parabola through the last three values then has its extremum within the step, at less than half of both end

@@ -177,8 +177,8 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
 /// equations, then computes the accelerations and multipliers. The coordinates do not change, and the multipliers of
 /// redundant constraints are zero.
 /// \throws InconsistentInitialConditions naming a joint whose violation exceeds `tolerance` [m], [rad] (`assemble`
-/// closes it), or the joints with redundant equations that contradict; InvalidInput, SingularMatrix, NonFiniteValue. x
-/// is then unchanged.
+/// closes it), or the joints with redundant equations that contradict each other; InvalidInput, SingularMatrix,
+/// NonFiniteValue. x is then unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void make_consistent(System& system, State& x, double tolerance = 1e-8) {
   require_positive(tolerance, "make_consistent: the tolerance");

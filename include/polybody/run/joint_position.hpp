@@ -183,7 +183,7 @@ class TurnCounterOf {
     return record(x);
   }
   /// Adds state x. Returns the angle with its full turns [rad].
-  /// \throws InvalidInput for a state of another model, or earlier than the last one.
+  /// \throws InvalidInput for a state of another model, and for a state earlier than the last one.
   double record(State const& x) {
     require_usable(system_, x);
     if (started_ && !(x.t >= t_))

@@ -254,7 +254,7 @@ class NullVectors {
       }
     }
   }
-  /// Removes value k, which the last one replaces.
+  /// Removes and returns value k. The last value takes its index.
   template <class T>
   static T take_out(Sequence<T>& values, std::size_t k) {
     std::swap(values[k], values.back());

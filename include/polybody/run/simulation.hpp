@@ -177,7 +177,7 @@ class Simulation {
   State* x_;
   Probe probe_;  // a separate system, so that questions do not change the run
   ObservedState now_;
-  State reduced_, seen_;  // reduced and full state with eliminating policies
+  State reduced_, seen_;  // reduced and full state, if policies eliminate unknowns
   MethodOf<I> method_;
   RunOptions options_;
   RunDriver driver_;
