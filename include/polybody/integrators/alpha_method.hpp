@@ -106,7 +106,7 @@ struct AlphaMethod {
     double const shifted = history.shifted();  // step length for which v and a are shifted; 0 after a start
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // if h resolves them
+        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // h resolves the motion
           return h * w.norm(w.jerk, first, end) <= 0.5 * w.norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);

@@ -306,7 +306,7 @@ template <class Solver>
     forward.hold(system, x.q, x.v, x.t);
   };
   space.keep_dependent();
-  choose();  // this factorisation has the correct rank; due to small pivots, the one before may drop too many rows
+  choose();  // this factorisation has the correct rank; before it, small pivots may have caused too many dropped rows
   if (!space.find()) return true;
   space.keep_dependent();
   space.keep_permanent();

@@ -48,7 +48,7 @@ template <class = void>
 }
 
 /// \throws InvalidInput naming a body with a coordinate or velocity that is NaN, infinite or above `largest_number`.
-/// Energies of larger numbers may not be finite. \param x state of the full model
+/// Energies of larger numbers can overflow. \param x state of the full model
 template <class = void>
 [[gnu::cold]] void require_computable(System const& system, State const& x) {
   ModelLayout const& full = system.layout();
