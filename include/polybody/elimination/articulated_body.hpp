@@ -88,8 +88,8 @@ class ArticulatedBodySolverOf {
     }
   }
 
-  /// Returns −1, or the index of the reduced unknown without a usable pivot. \throws InvalidInput for a nonzero block
-  /// between two bodies if neither is the parent of the other.
+  /// Factorises the matrix. Returns −1 on success, otherwise the index of the reduced unknown without a usable pivot.
+  /// \throws InvalidInput for a nonzero block between two bodies if neither is the parent of the other.
   Index factor() {
     if (misplaced_ >= 0)
       throw InvalidInput("solver.force_coupling", {"joint_coordinates::ArticulatedBody: a force couples body \"",
@@ -224,7 +224,7 @@ class ArticulatedBodySolverOf {
   ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   Sequence<Node> nodes_;
-  Sequence<Index> owner_, row_of_;  // body of each full velocity; remaining equation of each full one
+  Sequence<Index> owner_, row_of_;  // body of each full velocity; index of each equation among the remaining ones
   Sequence<Sequence<Vec6>> rows_;   // G: a row per remaining equation and body
   MatX answers_, schur_;
   VecX open_, lambda_, none_;

@@ -23,7 +23,7 @@ struct FloatingEndOf {
   RigidLayout layout = RigidLayout::quaternion;  ///< coordinates of the floating frame
   Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity of the body in full vectors
   Index deformations = 0;                        ///< number of deformation coordinates, after those of the frame
-  Index first_column = 0;                        ///< index of its first deformation column in `TreeStateOf::columns`
+  Index first_column = 0;                        ///< index of the first column of this end in `TreeStateOf::columns`
 
   /// Number of coordinates of the floating frame: (x, y, angle), or position and quaternion.
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }

@@ -56,7 +56,7 @@ void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>
     }
   }
 }
-/// Sorts columns that were computed from the last motion to the first into the order of the coordinates.
+/// Sorts columns into the order of the coordinates, if they were computed from the last motion to the first.
 template <class T>
 void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
   Mat<T, 6, 6> const back = f.s;
@@ -146,7 +146,7 @@ template <class = void>
 
 namespace detail {
 
-/// Computes the frame f of a body on a joint with a single rotation from the frame p of the parent. \param x, u angle
+/// Computes the frame f of a body from the frame p of its parent, for a joint with a single rotation. \param x, u angle
 /// [rad] and its rate [rad/s]
 template <class T>
 void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T const& u, TreeFrameOf<T>& f) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Sink between the blocks of a full tangent and a reduced system. In the reduced system some unknowns depend on
-/// others, x = P y, and some rows are omitted. The sink adds a block b as Pᵀ b P.
+/// Sink that adds the blocks b of a full tangent to a reduced system as Pᵀ b P. P relates the full unknowns x to the
+/// reduced unknowns y, x = P y; rows of omitted unknowns are zero.
 
 #include <algorithm>
 #include <list>

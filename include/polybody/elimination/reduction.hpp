@@ -53,19 +53,19 @@ class ReductionOf {
   /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
-  /// Copies the coordinates that both vectors contain from `reduced` to `full`.
+  /// Copies from `reduced` to `full` the coordinates that both vectors contain.
   void expand_coordinates(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_q_) full[w] = reduced[n];
   }
-  /// Copies the coordinates that both vectors contain from `full` to `reduced`.
+  /// Copies from `full` to `reduced` the coordinates that both vectors contain.
   void reduce_coordinates(VecX const& full, VecX& reduced) const {
     for (auto const& [n, w] : same_q_) reduced[n] = full[w];
   }
-  /// Copies the generalised velocities that both vectors contain from `reduced` to `full`.
+  /// Copies from `reduced` to `full` the generalised velocities that both vectors contain.
   void expand_velocities(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_v_) full[w] = reduced[n];
   }
-  /// Copies the generalised velocities that both vectors contain from `full` to `reduced`.
+  /// Copies from `full` to `reduced` the generalised velocities that both vectors contain.
   void reduce_velocities(VecXOf<T> const& full, VecXOf<T>& reduced) const {
     for (auto const& [n, w] : same_v_) reduced[n] = full[w];
   }

@@ -15,7 +15,7 @@ namespace polybody {
 /// Constants of a joint with a single rotation by x. Its axis is n in the parent's axes. In space, the quaternion from
 /// the parent's axes to those of the body is `still` cos(x/2) + `turning` sin(x/2).
 struct JointTurn {
-  bool only = false;                                      ///< true if the joint is of this kind
+  bool only = false;                                      ///< true if the joint permits only this rotation
   Vec<double, 3> axis{0, 0, 0};                           ///< n, unit vector in the parent's axes
   Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the rotation, (w, x, y, z)
 };
@@ -90,8 +90,9 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
   }
 }
 
-/// Inverts the leading n×n block of any matrix `a` in place, with pivoting. Returns −1, or the index of the first
-/// column without a pivot above 1e-14 `size`; in this case `a` is not the inverse. \param size magnitude of the entries
+/// Inverts the leading n×n block of any matrix `a` in place, with pivoting. Returns −1 on success. Otherwise `a` is not
+/// the inverse, and the result is the index of the first column without a pivot above 1e-14 `size`. \param size
+/// magnitude of the entries
 template <class T>
 int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
   auto out = detail::zeros<Mat<T, 6, 6>>();
@@ -157,7 +158,7 @@ template <class T>
 double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions const& motions, int k) {
   int const i = (axis + 1) % 3, j = (axis + 2) % 3;
   if (!followed) return std::atan2(r(j, i), r(i, i));
-  // Direction of the second axis after the first rotation.
+  // The direction of the second axis after the first rotation determines the angle.
   return motions.list[std::size_t(k + 1)].axis == i ? std::atan2(r(j, i), r(i, i)) : std::atan2(-r(i, j), r(j, j));
 }
 

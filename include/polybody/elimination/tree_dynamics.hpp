@@ -24,16 +24,16 @@ class TreeDynamicsOf {
   /// Computes the constants of the bodies and allocates all memory.
   explicit TreeDynamicsOf(Sequence<TreeBody> const& bodies) : walk_(bodies) {}
 
-  /// Computes u̇ of all degrees of freedom at (q, v) under weight alone. Returns −1, or the index of the body with a
-  /// degree of freedom without inertia.
+  /// Computes u̇ of all degrees of freedom at (q, v) under weight alone. Returns −1 on success, otherwise the index of
+  /// a body with a degree of freedom without inertia.
   Index accelerations_under_gravity(VecXOf<T> const& q, VecXOf<T> const& v, Vec3 const& gravity, VecXOf<T>& out) {
     walk_.place(q, v);
     walk_.add_velocity_forces();
     return solve(gravity, out);
   }
   /// Computes u̇ of all degrees of freedom at (q, v) for any forces. `residual` is M a − f of all bodies in full
-  /// velocities at v̇ = 0, where f includes weight and gyroscopic moments. Returns −1, or the index of the body with a
-  /// degree of freedom without inertia.
+  /// velocities at v̇ = 0, where f includes weight and gyroscopic moments. Returns −1 on success, otherwise the index
+  /// of a body with a degree of freedom without inertia.
   Index accelerations(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& residual, VecXOf<T>& out) {
     walk_.place(q, v);
     for (std::size_t i = 0; i < walk_.links.size(); ++i) {

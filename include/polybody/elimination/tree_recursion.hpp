@@ -100,7 +100,7 @@ struct TreeRecursionOf {
   /// without acceleration. The force p and the acceleration x are computed by the calling algorithm.
   struct Body {
     T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< joint axes, d, ω, c, p, x, in world axes
-    detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
+    detail::ArticulatedInertia<T> inertia;    ///< articulated inertia about the reference point
     std::size_t first;                        ///< index of its first degree of freedom in `directions`
     int count;                                ///< number of its degrees of freedom
   };

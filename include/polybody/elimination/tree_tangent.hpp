@@ -156,7 +156,8 @@ class TreeTangentSolverOf {
   explicit TreeTangentSolverOf(Sequence<TreeBody> const& bodies)
       : walk_(bodies), nodes_(bodies.size()), columns_(walk_.directions.size()) {}
 
-  /// Factorises the tangent at (q, v, a). Returns −1, or the index of the degree of freedom without a pivot.
+  /// Factorises the tangent at (q, v, a). Returns −1 on success, otherwise the velocity index of the degree of freedom
+  /// without a pivot.
   Index factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c);
   /// Computes y for the generalised forces `given`.
   void solve(VecXOf<T> const& given, VecXOf<T>& y);

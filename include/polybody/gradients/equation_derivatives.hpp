@@ -19,7 +19,8 @@
 
 namespace polybody::detail {
 
-// Check that each equation depends only on the parameter that names it, if parameters are perturbed together.
+// Check that each equation depends only on the parameter whose `affects` names its object, if parameters are perturbed
+// together.
 
 /// Difference points (`FourPoints`) of the four models of a group, for one member.
 using MemberOrder = std::array<std::uint8_t, 4>;
@@ -124,7 +125,7 @@ class SharedEquations {
 
 /// Derivatives ∂r/∂p and ∂Φ/∂p of the equations of a step with respect to all parameters, by differences. The
 /// differences also reveal equations that a parameter changes although `Parameter::affects` does not name their objects
-/// (gradients/equation_derivatives.hpp). \tparam V PerturbedModel or PerturbedStageModel
+/// (`SharedEquations`). \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class EquationDerivatives {
  public:

@@ -26,8 +26,8 @@ struct EvaluationPoint {
   double t = 0.0;       ///< time [s]
   EquationTerms terms;  ///< factors of the terms of the equations
   VecXOf<T> also;       ///< (nv) accelerations added to a in the constraint equations; empty if there are none
-  VecXOf<T> a;          ///< (nv) accelerations: the solution
-  VecXOf<T> lambda;     ///< (rows) multipliers: the solution
+  VecXOf<T> a;          ///< (nv) accelerations of the solution
+  VecXOf<T> lambda;     ///< (rows) multipliers of the solution
 };
 
 /// Residuals of the linear equations of motion and of the constraint equations at an evaluation point.
@@ -93,9 +93,9 @@ concept HasStageDerivatives = requires { typename I::Derivatives::template Linea
 
 /// Step of a run.
 struct StepTaken {
-  State const& before;  ///< state at its start
-  State const& after;   ///< state at its end
-  double h;             ///< its length [s]
+  State const& before;  ///< state at the start of the step
+  State const& after;   ///< state at the end of the step
+  double h;             ///< length of the step [s]
 };
 
 }  // namespace polybody

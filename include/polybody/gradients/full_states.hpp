@@ -23,7 +23,7 @@ template <class M, StateScalar T>
 class FullStates<M, T> {
  public:
   [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
-  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints in joint
+  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints with joint
   /// coordinates are evaluated from the equations, because their estimates in x have no derivatives.
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;
@@ -52,7 +52,7 @@ template <class V>
   }
 }
 
-/// Applies the actions of the events that were met last to the full state x. Returns the reduced state of the model v.
+/// Applies the actions of the events that occurred last to the full state x. Returns the reduced state of the model v.
 /// \throws InvalidInput if the state after an action is invalid (see `act`).
 template <class V>
 [[gnu::cold]] State acted_state(V& v, EventDetector const& watch, State x) {

@@ -9,12 +9,12 @@
 ///     GradientResult const g = gradient(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
 ///     g.derivatives[0];  // dJ/dp of the first parameter
 ///
-/// A forward run is followed by a backward sweep from its end (`AlphaStepAdjoint`), also over breakpoints and events
-/// (`AdjointEventHandler`). The states of the run are stored in snapshots or computed again (`reverse_steps`).
-/// A factory makes models from parameters. The equations of these models are differenced at fixed unknowns, as in
-/// `sensitivities`. Parameters that affect no common equation share these differences (`Parameter::affects`). All other
-/// costs of a step are independent of the number of parameters. Each step begins with a new factorisation, so that
-/// repeated steps are bitwise identical.
+/// A forward run is followed by a backward sweep from its end, with `AlphaStepAdjoint` for each step.
+/// `AdjointEventHandler` performs the sweep over breakpoints and events. The states of the run are stored in snapshots
+/// or computed again (`reverse_steps`). A factory makes models from parameters. The equations of these models are
+/// differenced at fixed unknowns, as in `sensitivities`. Parameters that affect no common equation share these
+/// differences (`Parameter::affects`). All other costs of a step are independent of the number of parameters. Each step
+/// begins with a new factorisation, so that repeated steps are bitwise identical.
 
 #include <span>
 
@@ -195,7 +195,7 @@ class AdjointRun {
     add_to_derivatives([&](V& v) { return term(v.scenario.end, v.scenario.model, v.full_state(last)); });
     add_integrand(run_.steps().size(), last, bar);
   }
-  /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
+  /// Adds the weighted integrand at x, which is state number k, to J, and its derivatives to `bar` and dJ/dp.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);

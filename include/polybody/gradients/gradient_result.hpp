@@ -104,7 +104,7 @@ struct GradientResult {
   std::vector<std::string> parameters;  ///< names, with units
   double value = 0.0;                   ///< J, in the objective's unit
   VecX derivatives;                     ///< (parameters) dJ/dp [unit of J / unit of p]
-  double left = 0.0;                    ///< largest relative change of a step's multipliers μ in the last correction
+  double left = 0.0;                    ///< largest relative change of adjoint multipliers in the last correction
   CheckpointingReport reversal;         ///< number of steps, repeated steps and snapshots
   double snapshot_size = 0.0;           ///< memory of one snapshot [bytes]
   RunReport run;                        ///< report of the forward run

@@ -20,7 +20,7 @@ struct ScenarioSystem {
   using Scenario = S;
   using Model = decltype(S::model);
 
-  std::shared_ptr<S const> shared;  ///< for other objects with the same scenario
+  std::shared_ptr<S const> shared;  ///< the scenario, also for other objects that share it
   S const& scenario;
   System system;
   FullStates<Model> full_state;

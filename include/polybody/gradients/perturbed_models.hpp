@@ -230,7 +230,7 @@ class PerturbedModels {
     double dt;           ///< derivative of the time of x [s]
     std::size_t number;  ///< number of the point in the step, in ascending order
   };
-  /// Stores the derivatives of the equations r and Φ at a point with respect to parameter j in `sum`. The unknowns are
+  /// Stores in `sum` the derivatives of the equations r and Φ at a point with respect to parameter j. The unknowns are
   /// fixed; the time of the point changes with the parameter.
   template <class X>
   void of_equations(std::size_t j, PointInStep<X> const& at, EquationDerivative& sum) {
@@ -280,7 +280,8 @@ class PerturbedModels {
   static constexpr std::size_t moving = std::size_t(-1);
   static constexpr double negligible = 1e-13;  // neglected change of a time, relative to a step
   // Largest distance of differences along the motion, relative to a step. The outer points, at twice this distance,
-  // remain before the next breakpoint: a step that does not end there ends at least 1 % of a step before it.
+  // remain before the next breakpoint: a step that does not end at the breakpoint ends at least 1 % of its length
+  // before it.
   static constexpr double largest_part = 4e-3;
 
   struct Parts {

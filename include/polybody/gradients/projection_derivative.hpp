@@ -45,7 +45,7 @@ class ProjectionDerivative {
   }
 
   Projection options_;
-  int steps_ = 0;  // iterations after the first one
+  int steps_ = 0;  // number of iterations after the first one
 };
 
 }  // namespace polybody

@@ -3,12 +3,12 @@
 /// Linearised step and adjoint of a step of Radau (integrators/radau.hpp). They contain the terms that the matrix of
 /// Newton's method omits.
 ///
-/// With y = (δv̇_i, δλ_i) of the three stages, the formulas of the method give the changes of q_i and v_i, and
+/// With y = (δv̇_i, δλ_i) of the three stages, the method gives the changes of q_i and v_i. The equations
 ///   δ[M v̇_i − f_i + G_iᵀλ_i] = 0,  δ[G_i v̇_i + γ_i] = 0
-/// is linear in y. One pass of dual numbers through each stage evaluates the left-hand side. Iterative refinement with
-/// a factorised matrix of all stages solves for y, until the corrections are at round-off. Each stage contributes its
-/// own tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at the
-/// end of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
+/// are linear in y. One pass of dual numbers through each stage evaluates the left-hand sides. Iterative refinement
+/// with a factorised matrix of all stages solves for y, until the corrections are at round-off. Each stage contributes
+/// its own tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at
+/// the end of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
 /// differentiates them.
 ///
 /// Adjoint: with y = (v̇_i, λ_i) and the equations R(y; x₀) of the stages, μ is the solution of (∂R/∂y)ᵀ μ = ȳ. A tape

@@ -56,7 +56,7 @@ struct RecordedStep {
   double h = 0.0;                        ///< length with which the step is repeated [s]
   double taken = 0.0;                    ///< actual length of the step, at most `h` [s]
   double end = 0.0;                      ///< time after the step [s]
-  double far = 0.0, largest = 0.0;       ///< with events: length of the full step [s], largest |event value|
+  double far = 0.0, largest = 0.0;       ///< if an event ends the step: length without it [s], largest |event value|
   std::vector<std::size_t> met, acting;  ///< indices of the events that end the step, and of those with an action
   bool at_breakpoint = false;            ///< true if the step ends at a breakpoint
   bool restarts = false;                 ///< true if the integrator starts again after the step
@@ -238,7 +238,7 @@ class RecordedRun {
 
   V* full_;
   RunReport* report_;
-  bool interrupted_, computes_;  // the run has events or breakpoints; its steps are computed
+  bool interrupted_, computes_;  // true if events and breakpoints are handled; true if steps are computed
   RunDriver driver_;
   State first_, x_, far_;  // state before the first step; present state; end of a step before the search for events
   StepPlan::Next next_{};

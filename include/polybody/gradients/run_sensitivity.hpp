@@ -10,7 +10,7 @@ namespace polybody::detail {
 struct RunSensitivity {
   State dx;         ///< derivative of the state; the history of `dx` contains the step lengths of the run itself
   double dt = 0.0;  ///< derivative of the time [s]
-  VecX lengths;     ///< derivatives of these step lengths [s]
+  VecX lengths;     ///< derivatives of the step lengths in the history [s]
 };
 
 template <class = void>

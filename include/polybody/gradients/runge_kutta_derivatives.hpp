@@ -78,7 +78,7 @@ class RungeKuttaStages {
     else
       return {};
   }
-  /// δ, v = h Σ_{j<count} weights[j] k_j (plus v₀).
+  /// δ = h Σ_{j<count} weights[j] δ˙_j, v = v₀ + h Σ_{j<count} weights[j] v̇_j.
   template <StateScalar T, class H, class Row>
   static void combine(RungeKuttaNumbers<Method, T>& w, H const& h, Row const& weights, std::size_t count) {
     w.delta.setConstant(T(0.0));

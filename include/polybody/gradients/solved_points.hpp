@@ -62,9 +62,9 @@ class SolutionPoints {
     x.lambda = solution_.tail(rows);
     here.place = x;
   }
-  /// Largest |constraint equation| for a = 0 at the last point.
+  /// Largest absolute residual of the constraint equations for a = 0 at the last point.
   double largest_row() const { return largest_size(equations_.rows); }
-  /// Redundant equations at the last point.
+  /// Indices of the redundant constraint equations at the last point.
   std::span<Index const> dropped() const { return found_[used_ - 1]->factors.dropped(); }
 
  private:
@@ -110,9 +110,9 @@ class SolvedPoints {
 
   /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.
   void solve(EvaluationPoint<>& x) { found_.solve(x); }
-  /// Largest |constraint equation| for a = 0 at the last point.
+  /// Largest absolute residual of the constraint equations for a = 0 at the last point.
   double largest_row() const { return found_.largest_row(); }
-  /// Redundant equations at the last point.
+  /// Indices of the redundant constraint equations at the last point.
   std::span<Index const> dropped() const { return found_.dropped(); }
 
   /// Sets a and λ of x to the solution of the next point, with its derivatives. q, v and `also` of x contain

@@ -22,7 +22,7 @@ namespace polybody {
 enum class ApproximateFactors {
   of_step,  ///< factorisation from the solution of the step itself, without further cost
   of_end,   ///< factorisation of the tangent at the end of the step
-  exact,    ///< factorisation of this tangent with the terms that Newton's method omits, such as second-order terms
+  exact,    ///< like `of_end`, with the terms that Newton's method omits, such as second-order terms
   turned,   ///< like `exact`, with the derivative of ⊞ in addition (gradients/increment_tangent.hpp)
 };
 
@@ -31,7 +31,7 @@ enum class ApproximateFactors {
 /// sufficient. The trial is repeated every hundred steps.
 class PreconditionerChoice {
  public:
-  /// Candidate for the choice.
+  /// Kind of factorisation with its cost.
   struct Candidate {
     ApproximateFactors factors;  ///< kind of factorisation
     double cost;                 ///< cost of the factorisation [passes with their solutions]
@@ -113,7 +113,7 @@ struct StepEnds {
 /// Direction of differentiation of a step.
 struct StepDirection {
   EquationDerivative by;  ///< derivatives of the equations at the end of the step
-  State* dx = nullptr;    ///< derivative of the state before the step, converted in place to the state after it
+  State* dx = nullptr;    ///< derivative of the state before the step, converted in place to that after the step
   double dh = 0.0;        ///< derivative of the step length [s]; `by` includes the change of the end time
 };
 

@@ -106,7 +106,7 @@ struct AlphaMethod {
     double const shifted = history.shifted();  // step length for which v and a are shifted; 0 after a start
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else unresolved
+        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // h resolves the motion
           return h * w.norm(w.jerk, first, end) <= 0.5 * w.norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);
@@ -188,8 +188,8 @@ struct AlphaMethod {
       for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
-  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns the index of
-  /// the unknown without a pivot, or −1.
+  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns −1 on
+  /// success, otherwise the index of the unknown without a pivot.
   template <class Solver>
   Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
                  bool surrogate_friction = true) const {
@@ -328,7 +328,7 @@ struct AlphaMethod {
       w.reused_factorisation.usable = false;
       return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
-    if (report.result != NewtonResult::converged && w.tangent.carries_multipliers()) {  // rhs of the message
+    if (report.result != NewtonResult::converged && w.tangent.carries_multipliers()) {  // for the message
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }

@@ -11,7 +11,7 @@ struct AlphaVectors {
   VecX lambda, rhs, y;                ///< in order: λ, right-hand side, correction; λ may have more entries than Φ
   VecX back, rate, open;              ///< in a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
   VecX kept, kept_back;               ///< copies of y and `back` during the test for round-off
-  AndersonAcceleration acceleration;  ///< acceleration of y, in the norm of the accelerations of bodies
+  AndersonAcceleration acceleration;  ///< Anderson acceleration of y, in the norm of the accelerations of bodies
   Index states;                       ///< number of first-order states, the last entries of v
 
   /// Zero vectors for the given numbers of coordinates, velocities, rows (constraint equations), multipliers of a step
@@ -41,7 +41,7 @@ struct AlphaVectors {
 
   /// Euclidean norm of the entries [i, end) of a.
   static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
-  /// Computes Δq and v after e seconds [s] from x with constant `jerk`.
+  /// Computes Δq and v at the time e [s] after x with constant `jerk`.
   void follow(State const& x, double e) {
     for (Index i = 0; i < v.size(); ++i) {
       dq[i] = e * x.v[i] + 0.5 * e * e * x.a[i] + e * e * e / 6.0 * jerk[i];

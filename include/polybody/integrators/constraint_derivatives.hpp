@@ -59,8 +59,8 @@ class TreeRows {
 
   /// Stores the positions of the last evaluation of the system for `write`.
   void hold() { frozen_->freeze(); }
-  /// Adds row i with the entries `row` at `velocities(i)` to `sink`. `row0` and `col0` are the row and column of the
-  /// first equation and of the first unknown in the sink.
+  /// Adds row i to `sink`; its entries for the velocities `velocities(i)` are `row`. `row0` and `col0` are the row and
+  /// column of the first equation and of the first unknown in the sink.
   template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];
@@ -200,7 +200,7 @@ class ConstraintDerivatives {
       k += in_tree_ ? std::size_t(count) : 1;
     }
   }
-  /// True if `write` counts rows from the first equation of all, not from the first constraint equation.
+  /// True if `row0` of `write` is the row of the first equation, not of the first constraint equation.
   bool counts_equations() const { return in_tree_; }
 
  private:

@@ -10,9 +10,9 @@
 
 namespace polybody::detail {
 
-/// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms.
-/// The size of a correction is the same root mean square. A single large coordinate, for example an angle after many
-/// revolutions, therefore enlarges both sizes.
+/// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms. The
+/// size of a correction is also a root mean square. A single large coordinate, for example an angle after many
+/// revolutions, therefore enters both in the same way.
 inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }

@@ -85,7 +85,7 @@ struct ConservingStep {
   }
 
  private:
-  /// Factor s [s²] of Δq = h v₀ + s a, with Δv = h a.
+  /// Factor s [s²] in Δq = h v₀ + s a, with Δv = h a.
   double scale(double h) const { return (0.5 + chi) * h * h; }
 
   template <class Solver>
@@ -187,7 +187,7 @@ struct ConservingStep {
     bool const careful = effort > 0;
     if (careful) {
       w.vd = x.a;
-      if (effort == 1) w.vd.setZero();  // mean of unresolved accelerations
+      if (effort == 1) w.vd.setZero();  // the mean of accelerations that h does not resolve
       w.lambda = x.lambda;
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);

@@ -31,7 +31,8 @@ class AssemblyExtents {
                                 Sequence<Index> const& assembly);
 
   /// Computes the extents before and at the end (q, v) of a step, and keeps the larger ones. A change of a velocity
-  /// over the step also counts as an extent. The bodies of a floating tree are included at the end only.
+  /// over the step also counts as an extent. The bodies of a tree without a joint to the ground are included at the end
+  /// only.
   void measure(System const& system, State const& before, VecX const& q, VecX const& v) {
     for (Box& box : boxes_) box.extent = {};
     add(positions_, before.q, &Box::ground, &Extent::length);
@@ -92,7 +93,7 @@ class AssemblyExtents {
 
   Sequence<Box> boxes_;
   Sequence<Point> positions_, velocities_;            // of a time step
-  Sequence<Point> full_positions_, full_velocities_;  // of floating trees: a step has the coordinates of the root only
+  Sequence<Point> full_positions_, full_velocities_;  // of trees not joined to the ground: a step has only their root
   VecX full_q_, full_v_;
 };
 

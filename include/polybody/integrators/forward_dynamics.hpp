@@ -24,8 +24,8 @@ struct ConstraintFeedback {
 struct ConstraintGain {
   double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1 [1]
   std::size_t dropped = 0;  ///< number of redundant constraint equations
-  /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or changes are
-  /// ten times as large.
+  /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or `moved` is
+  /// more than ten times as large.
   bool far_above(ConstraintGain const& usual) const { return dropped > usual.dropped || moved > 10.0 * usual.moved; }
 };
 
@@ -296,7 +296,7 @@ class ForwardDynamics {
     return bad < 0 && first_not_finite(a) < 0;
   }
 
-  /// Solver of [M, Gᵀ; G, 0]; one that factorises constant parts of the matrix only once, if there are such parts.
+  /// Solver of [M, Gᵀ; G, 0]. If the matrix has constant parts, the solver factorises them only once.
   [[gnu::cold]] static std::unique_ptr<LinearEquations> solver_for(System& system) {
     Sequence<bool> constant = detail::constant_unknowns(system);
     bool const changes = system.rows() > 0 || !has_constant_mass(system);

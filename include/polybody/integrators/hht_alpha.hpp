@@ -12,7 +12,7 @@ struct HhtAlpha {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double alpha = -0.1;              ///< in [−1/3, 0]: −1/3 damps most, 0: trapezoidal rule; use < 0 with constraints
+  double alpha = -0.1;              ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule; constraints need < 0
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h

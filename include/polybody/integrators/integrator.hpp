@@ -24,7 +24,7 @@ struct StepReport {
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
   long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< last correction over its tolerance, if the iteration budget ended the step; or 0
+  double left = 0.0;         ///< last correction over its tolerance if the iteration budget ended the step, else 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {
@@ -71,7 +71,7 @@ void require_finite_end(System const& s, VecX const& q, VecX const& v, double t)
 }
 }  // namespace detail
 
-/// Checks of the steps of a run, and the cost of steps that failed. The run sets both.
+/// Checks of the steps of a run, and the cost of steps that failed. The run sets the limits and resets the cost.
 struct StepCheck {
   PlausibilityCheck bounds;  ///< plausibility limits of the run; inactive until the run begins
   AttemptCost failed;        ///< cost of failed attempts since the run reset this sum
@@ -86,12 +86,12 @@ struct StepCheck {
   }
 };
 
-/// Trial of a step with a workspace. Without `keep`, its destructor restores the account of `StepCheck::bounds` and the
-/// elimination order of `forward`, so that a repeated step is bitwise identical.
+/// Trial of a step with a workspace. Without `keep`, the destructor restores the energy account of `StepCheck::bounds`
+/// and the elimination order of `forward`, so that a repeated step is bitwise identical.
 template <class Workspace>
 class StepTrial {
  public:
-  /// Stores the account and the elimination order, and resets the cost of failed attempts.
+  /// Stores the energy account and the elimination order, and resets the cost of failed attempts.
   explicit StepTrial(Workspace& w) : w_(w), bounds_(w.check.bounds), reorderings_(w.forward.reorderings()) {
     w.check.failed = {};
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Reports and errors of steps in which Newton's method failed.
+/// Reports of steps by Newton's method, and errors of steps in which it failed.
 
 #include <polybody/integrators/correction_size.hpp>
 #include <polybody/integrators/integrator.hpp>
@@ -32,8 +32,8 @@ StepReport report_of(double h, NewtonReport const& last, int each = 1, StepRepor
   return step;
 }
 
-/// Repeats a step by `again()`. Returns the report of `again` with the cost of the failed `attempt` before. If `again`
-/// throws, this cost is added to `failed`.
+/// Repeats a step by `again()`. Returns the report of `again`, which includes the cost of the failed `attempt`. If
+/// `again` throws, this cost is added to `failed`.
 template <class Again>
 StepReport retried(AttemptCost& failed, NewtonReport const& attempt, Again&& again) {
   return count_if_failed(failed, with_attempt(attempt, {}), [&] { return with_attempt(attempt, again()); });

@@ -279,9 +279,9 @@ struct Radau {
     return false;
   }
 
-  /// Keeps the multipliers of equations that are redundant at the start unchanged. If fewer equations are redundant at
-  /// the second stage of the first step, the start is a singular configuration, and the redundant equations of the
-  /// second stage are used instead.
+  /// Excludes equations that are redundant at the start: their multipliers remain unchanged. If fewer equations are
+  /// redundant at the second stage of the first step, the start is a singular configuration, and the redundant
+  /// equations of the second stage are used instead.
   template <class Solver>
   static void leave_redundant(System& system, State const& x, double h, Workspace<Solver>& w) {
     auto const at_start = w.forward.redundant_rows();

@@ -185,8 +185,8 @@ class SparsePartitionOf {
     }
     return changed;
   }
-  /// Updates R after the exchange of the dependent column for row `row` of R with the independent column for column
-  /// `col`.
+  /// Updates R after an exchange of two columns of G: the dependent one of row `row` of R, and the independent one of
+  /// column `col` of R.
   void pivot(Index row, Index col) {
     T const inverse = 1.0 / r_(row, col);
     r_.row(row) *= inverse;
@@ -203,7 +203,7 @@ class SparsePartitionOf {
   Sequence<bool> left_out_;
   std::vector<Eigen::Triplet<T>> entries_, some_;
   Matrix g_, gd_;
-  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // cannot be moved
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // a pointer, because Lu cannot be moved
   Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< place: index in dependents_ or kept_rows_
   T largest_entry_ = 0.0;
   MatXOf<T> r_;

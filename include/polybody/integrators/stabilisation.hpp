@@ -13,7 +13,7 @@
 namespace polybody {
 
 namespace detail {
-/// Number of times that a policy selected independent coordinates; zero for other policies.
+/// Number of times that a policy selected independent coordinates; zero for policies that select none.
 template <class Scratch>
 long choices_of(Scratch const& scratch) {
   if constexpr (requires { scratch.choices(); })

@@ -115,14 +115,16 @@ class StepHistory {
     return of_length;
   }
 
-  /// Adds a point before x, as if a step h had ended at x and v̇ had changed at the rate `jerk` during this step.
+  /// Adds a point before x, as if a step of length h had ended at x and v̇ had changed at the rate `jerk` during this
+  /// step.
   void pretend(State const& x, VecX const& jerk, double h) {
     for (Index i = 0; i < nv_; ++i) a()[i] = x.a[i] - h * jerk[i];
     copy(x.lambda.data(), rows_, lambda());
     length(1) = h;
   }
 
-  /// Adds x, the start of a step h, as the last point. `own` contains the accelerations a of the method after the step.
+  /// Adds x, the start of a step of length h, as the last point. `own` contains the accelerations a of the method after
+  /// the step.
   void push(State const& x, double h, VecX const& own) {
     copy(own.data(), nv_, memory_.data());
     Past const past(*this);

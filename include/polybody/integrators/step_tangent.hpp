@@ -6,10 +6,11 @@
 
 namespace polybody {
 
-/// Equations of an implicit step with their tangent, with or without the second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q.
-/// These terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates
-/// them for eight steps. If another step does not converge within the same number of steps after the end of this
-/// period, the next period is twice as long. This occurs near singular configurations.
+/// Equations of an implicit step with their tangent, with or without the second-order terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q,
+/// which have the factor ck of `TangentCoefficients`. These terms cost as much as all other terms and seldom save an
+/// iteration. A step that does not converge activates them for eight steps. If another step does not converge within
+/// the same number of steps after the end of this period, the next period is twice as long. This occurs near singular
+/// configurations.
 template <LinearSolver Solver>
 class StepTangent {
  public:
@@ -76,7 +77,8 @@ class StepTangent {
   bool carries_multipliers() const { return carries_multipliers_; }
   /// Returns the tree to the state `at` after a factorisation in another state. Requires `carries_multipliers()`.
   void return_to(At<double> const& at) { coordinates_->expand(at.q, at.v, full_q_, full_v_); }
-  /// Factorises the tangent at x, the state of the last evaluation. Returns −1, or the equation without a pivot.
+  /// Factorises the tangent at x, the state of the last evaluation. Returns −1 on success, otherwise the index of the
+  /// equation without a pivot.
   Index factor(System& system, StepPosition const& x, TangentCoefficients const& k) {
     return solver().factor_tangent(system, x, k, terms());
   }

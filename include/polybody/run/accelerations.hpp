@@ -69,7 +69,7 @@ Vec6 twist_rate(BodyInState<B> const& body, typename B::Point const& point, Stat
   return p.push(x.a.data() + first) + p.bias;
 }
 
-/// True if no acceleration of x differs from zero.
+/// True if all accelerations of x are zero.
 inline bool lacks_accelerations(State const& x) { return largest_size(x.a) == 0.0; }
 
 }  // namespace detail

@@ -40,7 +40,7 @@ class AnyModel {
   ProblemSize const& counts() const { return problem_size_; }  ///< problem size at construction
   /// System of the full model, with the evaluation of motion and energies.
   System system() const { return system_(model_.get()); }
-  SystemSource source() const { return {system_, model_.get()}; }  ///< makes such systems
+  SystemSource source() const { return {system_, model_.get()}; }  ///< source of systems of the full model
 
   /// Systems of a run by integrator I. \throws InvalidInput if the constructor was called without integrator I.
   template <class I>
@@ -81,7 +81,7 @@ RunSystems run_systems(AnyModel const& model) {
 }
 /// System of the full model, for evaluations of its states.
 inline System observation_system(AnyModel const& model) { return model.system(); }
-/// Source of systems of the model in `model`.
+/// Source of systems of the model that `model` contains.
 inline SystemSource system_source(AnyModel const& model) { return model.source(); }
 /// Coordinates, constraint equations and degrees of freedom of the model when the `AnyModel` was constructed.
 inline ProblemSize problem_size(AnyModel const& model) { return model.counts(); }

@@ -41,8 +41,8 @@ double power_of_joint(System const& system, State const& x, Index joint) {
 }  // namespace detail
 
 /// Forces [N] and moments [N m] of a force element on its markers, in the order of the markers: each about the origin
-/// of its marker, world axes. For a group of forces, the result is a vector with the sum over the pairs of each marker.
-/// `system` must have been evaluated at the state, and `System::push_forces` called afterwards.
+/// of its marker, world axes. For a group of forces, the result is a vector; each entry is the sum over all pairs of
+/// its marker. `system` must have been evaluated at the state, and `System::push_forces` called afterwards.
 /// \throws InvalidInput for a handle of another model.
 template <class F>
 auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
@@ -70,10 +70,10 @@ double power(System const& system, State const&, ElementHandle<F> const& force) 
   return detail::power_of_force(system, index_of_force(system.layout(), force));
 }
 /// Power of a driving constraint on the bodies [W], λᵀΦ_t: the multipliers times the prescribed rates, positive if the
-/// drive adds energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. The power is zero for joints without a
-/// function of time. In a compliant joint, λ(g, ġ) replaces the multipliers. `system` must have been evaluated at x.
-/// The multipliers of x must belong to the time x.t (see `EnergyAudit`). \throws InvalidInput for a handle of another
-/// model.
+/// drive adds energy. For a prescribed angle ψ(t), ġ = θ̇ − ψ̇, and the power is the driving moment −λ times ψ̇. The
+/// power is zero for joints without a function of time. In a compliant joint, λ(g, ġ) replaces the multipliers.
+/// `system` must have been evaluated at x. The multipliers of x must belong to the time x.t (see `EnergyAudit`).
+/// \throws InvalidInput for a handle of another model.
 template <class J>
   requires requires { typename J::Geometry; }
 double power(System const& system, State const& x, ElementHandle<J> const& joint) {

@@ -11,7 +11,7 @@ namespace polybody {
 
 /// Contact point in a state.
 struct TouchingPoint {
-  Index body;                  ///< index of the body's marker among the many of the group, from 0
+  Index body;                  ///< index of the body's marker among the `many()` markers of the group
   std::string const* against;  ///< name of the partner in the contact
   Vec3 place;                  ///< (3) position, world axes [m]
   Vec3 normal;                 ///< (3) unit vector towards the body

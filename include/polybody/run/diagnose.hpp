@@ -42,8 +42,8 @@ class StiffestMotion {
   using Matrix = Eigen::SparseMatrix<double>;
 
   /// Power iteration for the largest aᵀK a/aᵀM a. The estimate converges from below, with a relative error of at most
-  /// 1e-3 if the second eigenvalue is not closer to the first than that. `forward` must be factorised at the state at
-  /// which `system` was evaluated.
+  /// 1e-3 if the relative distance of the two largest eigenvalues is at least 1e-3. `forward` must be factorised at the
+  /// state at which `system` was evaluated.
   template <class = void>
   StiffestMotion(System& system, ForwardDynamics<DefaultSolver>& forward) {
     Matrix const elastic = matrix_of(system, [&](auto& sink) {

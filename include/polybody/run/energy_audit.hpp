@@ -95,8 +95,8 @@ class EnergyAuditOf {
   double unaccounted() const {
     return work_of_drives() + work_of_loads() + work_of_gravity() - kinetic() - stored() - dissipated();
   }
-  /// Unaccounted energy relative to the turnover: the largest value so far of the supplied work, of the converted
-  /// energy, or of the kinetic energy.
+  /// Unaccounted energy relative to the turnover. The turnover is the largest value so far of the supplied work, of the
+  /// converted energy, or of the kinetic energy.
   double relative() const { return turnover_ > 0.0 ? std::abs(unaccounted()) / turnover_ : 0.0; }
 
   /// Powers in the last state.

@@ -122,9 +122,9 @@ template <LinearSolver Solver = DefaultSolver>
 }
 
 /// Applies the actions of the `events` that occurred last to the user's state x, and returns the integrated state.
-/// \param systems integrated system, and the full system if joints are eliminated, otherwise null. With a full system,
-/// velocities are projected onto its constraint equations before the elimination. \param tolerance limit of the
-/// constraint violation after an action [m], [rad]
+/// \param systems integrated system; full system, or null if no joints are eliminated. With a full system, velocities
+/// are projected onto its constraint equations before the elimination. \param tolerance limit of the constraint
+/// violation after an action [m], [rad]
 template <LinearSolver Solver>
 [[gnu::cold]] State after_action(EventDetector const& watch, std::vector<Event> const& events, State x,
                                  std::array<System*, 2> systems, double tolerance) {

@@ -29,7 +29,7 @@ struct EventMotion {
                             "\" is not finite at t = ", ErrorTime{x.t}, " s. Check the function of the event."});
     return y;
   }
-  /// Rate of the event value at x [1/s], by central differences over a tenth of the requested step.
+  /// Rate of the event value at x [unit of the event/s], by central differences over a tenth of the requested step.
   [[gnu::cold]] double rate(Event const& event, State const& x) const {
     double const by = 0.05 * requested_step;
     State y = x;
@@ -68,9 +68,9 @@ struct EventStep {
     }
     return x;
   }
-  /// Length [s] within the step after which the event value has the opposite sign, although it has the sign `side` at
-  /// both ends of the step; 0 if none is found. x is the state at the end of the step. The extremum of the value is
-  /// estimated from its values and rates at the ends of an interval by a cubic, in at most five iterations.
+  /// Time [s] from the start of the step to a state in which the event value does not have the sign `side`, although it
+  /// has this sign at both ends of the step; 0 if none is found. x is the state at the end of the step. A cubic through
+  /// the values and rates at the ends of an interval estimates the extremum, in at most five iterations.
   [[gnu::cold]] double turn(Event const& event, int side, State const& x) const {
     if (side != 1 && side != -1) return 0.0;
     auto const value = [&](State const& y) { return side * event.value(motion.seen(y)); };
@@ -102,27 +102,27 @@ struct EventStep {
 
 /// Record of one event during a run: sign of its value, values in the last steps, and actions.
 struct EventPlace {
-  static constexpr int repeats_allowed = 10;    ///< limit of consecutive actions, each within `tolerance` of the last
+  static constexpr int repeats_allowed = 10;    ///< limit of `repeats`
   static constexpr int actions_allowed = 1000;  ///< limit of actions of one event within one step length
-  static constexpr double never = std::numeric_limits<double>::infinity();  ///< initial time of actions [s]
+  static constexpr double never = std::numeric_limits<double>::infinity();  ///< initial value of action times [s]
 
-  int side = 0;           ///< sign of the value: −1, 0 (unknown), 1; −2 or 2 if held at zero after this sign
+  int side = 0;           ///< sign of the value: −1, 0 (unknown) or 1; −2 or 2: now held at zero, −1 or 1 before
   bool known = false;     ///< true if `value` is set
   double value = 0.0;     ///< value at the end of the last step, unit of the event
-  double rate = 0.0;      ///< mean rate of the value over the last step [1/s]
+  double rate = 0.0;      ///< mean rate of the value over the last step [unit of the event/s]
   double span = 0.0;      ///< length of that step [s]; 0 after a start
   double acted = -never;  ///< time of the last action [s]
   double since = -never;  ///< time from which `actions` are counted [s]
   int actions = 0;        ///< number of actions from `since` on
   int repeats = 0;        ///< consecutive actions, each within the tolerance of the preceding one
   bool stays = false;     ///< true if the rate of the value is zero after the last action
-  double scale = 0.0;     ///< |rate| of the value at the last event [1/s]
+  double scale = 0.0;     ///< |rate| of the value at the last event [unit of the event/s]
   double off = 0.0;       ///< |value| at the last event, unit of the event
 
   bool rests() const { return side == 2 || side == -2; }  ///< true if the value is held at zero
   /// Sign of the value `y`: −1, 0 or 1.
   static int sign(double y) { return (y > 0.0) - (y < 0.0); }
-  /// True if the value y has left the stored side. False for an unknown side.
+  /// True if the sign of the value y differs from the stored sign. False if the stored sign is unknown.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
   /// True if the value may have crossed zero twice within a step of length h [s] that ends with the value `now`. The
   /// parabola through the last three values then has its extremum within the step, at less than half of both end
@@ -204,7 +204,7 @@ class EventDetector {
     go_on(step.length);
     return false;
   }
-  /// Restores the signs and the report that the last `meet` found.
+  /// Restores the signs and the report of the time before the last `meet`.
   [[gnu::cold]] void put_back(RunReport& report) {
     places_ = before_.places;
     report.events.truncate(before_.events);
@@ -263,7 +263,7 @@ class EventDetector {
     State const& full = motion.seen(x);
     for (Event const& event : events) now_.push_back(EventMotion::value(event, full));
   }
-  Sequence<EventPlace> places_;  // data from before a restart, whose round-off must not cause a second event
+  Sequence<EventPlace> places_;  // unchanged by a restart without action, so that its round-off causes no second event
   Before before_;
   Sequence<double> now_;
   Sequence<int> met_;  // 1: event occurred, 2: value is held at zero

@@ -25,8 +25,8 @@ Index most_open(VecX const& phi) {
 
 namespace detail {
 
-/// Constraint violations in a state. In an assembly of bodies smaller than one metre, violations of lengths are divided
-/// by the extent of the assembly: the largest distance of its bodies and joint markers along a world axis.
+/// Constraint violations in a state. If the extent of an assembly of bodies is below one metre, violations of lengths
+/// are divided by it. The extent is the largest distance of bodies and joint markers along a world axis.
 template <class = void>  // compiled only if used
 struct RelativeViolation {
   VecX absolute;  ///< Φ (rows) [m], [rad]
@@ -102,9 +102,9 @@ struct RelativeViolation {
 
 }  // namespace detail
 
-/// Requires constraint violations of at most `tolerance` [m], [rad]. In an assembly of bodies smaller than one metre,
-/// the limit of lengths is `tolerance` times the extent of the assembly. \throws InconsistentInitialConditions naming
-/// the joint with the largest violation.
+/// Requires constraint violations of at most `tolerance` [m], [rad]. If the extent of an assembly of bodies is below
+/// one metre, the limit of lengths is `tolerance` times this extent. \throws InconsistentInitialConditions naming the
+/// joint with the largest violation.
 template <class = void>
 [[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
   detail::RelativeViolation<> const open(system, x);
@@ -134,10 +134,10 @@ template <class Solver>
 }
 
 /// Corrects the coordinates until every joint is satisfied to `tolerance`, in at most `max_iterations` Gauss–Newton
-/// iterations with minimal changes in the mass norm. In an assembly of bodies smaller than one metre, lengths are also
-/// satisfied to 1e-9 of its extent. Then projects the velocities. \throws InconsistentInitialConditions naming the
-/// joint that cannot be satisfied, or the joints whose redundant equations contradict each other; InvalidInput for a
-/// quaternion whose norm is not one. After an exception x is unchanged.
+/// iterations with minimal changes in the mass norm. If the extent of an assembly of bodies is below one metre,
+/// violations of lengths are also at most 1e-9 of this extent. Then projects the velocities. \throws
+/// InconsistentInitialConditions naming the joint that cannot be satisfied, or the joints whose redundant equations
+/// contradict each other; InvalidInput for a quaternion whose norm is not one. After an exception x is unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
@@ -177,8 +177,8 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
 /// equations, then computes the accelerations and multipliers. The coordinates do not change, and the multipliers of
 /// redundant constraints are zero.
 /// \throws InconsistentInitialConditions naming a joint whose violation exceeds `tolerance` [m], [rad] (`assemble`
-/// closes it), or the joints with redundant equations that contradict; InvalidInput, SingularMatrix, NonFiniteValue. x
-/// is then unchanged.
+/// closes it), or the joints with redundant equations that contradict each other; InvalidInput, SingularMatrix,
+/// NonFiniteValue. x is then unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void make_consistent(System& system, State& x, double tolerance = 1e-8) {
   require_positive(tolerance, "make_consistent: the tolerance");

@@ -152,11 +152,11 @@ double joint_translation_rate(System const& system, ElementHandle<J> const& join
 /// Angle of a joint with its full turns, over the states of a run:
 ///   TurnCounter turns(model, crank);
 ///   for (State const& now : simulate(…)) angle = turns.record(now);
-/// The first state has the angle in (−π, π]. From state to state, θ₁ = θ₀ + Δ. Of all increments Δ that agree with the
-/// angles of the two states up to full turns, the one nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀) is taken. The count is correct
-/// if the error of this estimate is below half a turn. This condition is satisfied for each step of a run, and between
-/// any two states if the rate is constant. `record` does not allocate memory. The model must outlive the counter and
-/// must not change after its construction.
+/// The angle of the first state lies in (−π, π]. From state to state, θ₁ = θ₀ + Δ. Of all increments Δ that agree with
+/// the angles of the two states up to full turns, the one nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀) is taken. The count is
+/// correct if the error of this estimate is below half a turn. This condition is satisfied for each step of a run, and
+/// between any two states if the rate is constant. `record` does not allocate memory. The model must outlive the
+/// counter and must not change after its construction.
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
@@ -183,7 +183,7 @@ class TurnCounterOf {
     return record(x);
   }
   /// Adds state x. Returns the angle with its full turns [rad].
-  /// \throws InvalidInput for a state of another model, or earlier than the last one.
+  /// \throws InvalidInput for a state of another model, and for a state earlier than the last one.
   double record(State const& x) {
     require_usable(system_, x);
     if (started_ && !(x.t >= t_))

@@ -79,7 +79,8 @@ auto ask_section(M const& model, State const& x, Marker<B> const& marker, F&& qu
 }
 }  // namespace detail
 
-/// Strains (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the marker's section. \throws InvalidInput for a marker of another model.
+/// Strains (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the marker's section [1], [1/m]. \throws InvalidInput for a marker of
+/// another model.
 template <class M, class B>
 Vec6 section_strains(M const& model, State const& x, Marker<B> const& marker) {
   return detail::ask_section(model, x, marker,

@@ -19,9 +19,10 @@ ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
                                             "\" has no constraint equations."});
 }
 
-/// Gbᵀλ of linear equations as a wrench about the joint point. Position equations give the force, and a gradient r_α
-/// with its λ_α gives the moment r_α × λ_α. (The component of λ_α along r_α stretches the gradient and exerts no
-/// wrench.) If the second body is the ground, r_α is the gradient of the first body.
+/// Gbᵀλ of linear equations as a wrench about the joint point, with the columns Gb of the second body. Position
+/// equations give the force, and a gradient r_α with its λ_α gives the moment r_α × λ_α. (The component of λ_α along
+/// r_α stretches the gradient and exerts no wrench.) If the second body is the ground, r_α is the gradient of the first
+/// body.
 template <class T>  // compiled only if used
 Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
   Vec<T, 6> w = Vec<T, 6>::Zero();
@@ -60,9 +61,9 @@ VecX constraint_violation(System const& system, ElementHandle<J> const& joint) {
 /// Axes for the components of a reaction.
 enum class ReactionAxes { world, joint };
 
-/// Force and moment that a joint exerts on its second body, about the joint point on this body: −Gbᵀλ [thesis Eq. 3.3
-/// and the rule of equipollent forces]. `ReactionAxes::joint` are the axes of the second marker. `system` must have
-/// been evaluated at x.
+/// Force and moment that a joint exerts on its second body, about the joint point on this body: −Gbᵀλ, with the columns
+/// Gb of this body [thesis Eq. 3.3 and the rule of equipollent forces]. `ReactionAxes::joint` are the axes of the
+/// second marker. `system` must have been evaluated at x.
 /// \param joint index in the layout, from `index_of_joint`
 template <class T>  // compiled only if used
 Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index joint,

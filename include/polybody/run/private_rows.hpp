@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Local tests for redundant rows of the constraint Jacobian G. Rows are independent of all others if only they have
-/// entries in the velocities of some body, and if these entries are linearly independent. Rows between the same bodies
-/// can depend on each other.
+/// Local tests for redundant rows of the constraint Jacobian G. A set of rows is independent of all others if no other
+/// row has entries in the velocities of a certain body, and if the entries of the set in these velocities are linearly
+/// independent. Rows between the same bodies can depend on each other.
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Questions about states: `Probe`, a state with its evaluation, and a function of model and state for each question.
+/// Evaluation of states: `Probe`, `ObservedState` (a state with its evaluation), and a function of model and state for
+/// each quantity.
 
 #include <cstring>
 #include <optional>
@@ -28,8 +29,8 @@ System observation_system(M const&& model) = delete;
 
 /// Function that makes full systems of a model, and the model as its argument.
 struct SystemSource {
-  System (*make)(void const* model) = nullptr;  ///< null: there is no such function
-  void const* model = nullptr;                  ///< the model, without its type
+  System (*make)(void const* model) = nullptr;  ///< null if there is no such function
+  void const* model = nullptr;                  ///< the model, with erased type
 };
 /// Source of systems for evaluations of states of `model`.
 template <class M>
@@ -39,7 +40,7 @@ SystemSource system_source(M const& model) {
 
 class ObservedState;
 
-/// Evaluates states of a model. Its arrays are allocated once, and all questions about a state share one evaluation:
+/// Evaluates states of a model. Arrays are allocated once, and all questions about a state share one evaluation:
 ///   Probe probe(model);
 ///   auto const now = probe.at(x);
 ///   now.energy().total();  now.reaction(pin).f;  now.position(rod.at(1.0));
@@ -85,7 +86,7 @@ class Probe {
     throw InvalidInput("system.missing_capability", {"This run was made from systems without ", ErrorObject{"a probe"},
                                                      ". Make it by simulate(model, ...), or use Probe(model)."});
   }
-  /// System that is evaluated at x, by the last evaluation if it has the same coordinates, velocities and time.
+  /// System evaluated at x. The last evaluation is used again if coordinates, velocities and time are the same.
   /// \throws InvalidInput for a state of another model, and if the model has changed.
   template <class = void>
   System& evaluated(State const& x) {
@@ -118,7 +119,7 @@ class Probe {
   SystemSource source_;
   ModelWatch watch_;
   std::optional<System> system_;
-  bool current_ = false, has_forces_ = false;  // of the state in the system
+  bool current_ = false, has_forces_ = false;  // true if the system is evaluated; true if its wrenches are
   long evaluations_ = 0;
 };
 
@@ -318,7 +319,7 @@ template <class T>
 concept ProbedModel = !std::same_as<T, System>;
 
 /// Energies in state x of a model [J]. For many questions use `Probe`.
-/// \throws InvalidInput for a state or a handle of another model, as all following functions
+/// \throws InvalidInput for a state or a handle of another model, like all following functions
 template <ProbedModel M, std::convertible_to<State const&> X>
 Energy energy(M const& model, X const& x) {
   return detail::answer(model, x, [](ObservedState const& now) { return now.energy(); });
@@ -350,7 +351,7 @@ Wrench<double> reaction(M const& model, X const& x, ElementHandle<J> const& join
                         ReactionAxes axes = ReactionAxes::world) {
   return detail::answer(model, x, [&](ObservedState const& now) { return now.reaction(joint, axes); });
 }
-/// Wrenches of a force element in state x of a model, with its first-order states.
+/// Wrenches of a force element in state x of a model, for the first-order states that x contains.
 template <ProbedModel M, std::convertible_to<State const&> X, class F>
 auto applied_wrenches(M const& model, X const& x, ElementHandle<F> const& force) {
   return detail::answer(model, x, [&](ObservedState const& now) { return now.applied_wrenches(force); });

@@ -111,7 +111,7 @@ struct ConstraintCurvature {
     return differ(c, gamma_, rest_);
   }
   /// True if the velocities v of the state do not determine a branch: the quadratic form is equal at v + s w and v − s
-  /// w.
+  /// w, where s scales w to the size of v.
   bool leaves_open(System& system, VecX const& c) {
     double const size = largest_size(x_.v);
     if (!(size > 0.0)) return true;

@@ -71,8 +71,8 @@ template <class = void>
 template <class = void>  // compiled only if used
 struct ScaledRows {
   VecX of_velocity, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
-  /// Sizes of all equations for `BlockFactor::null_vectors`: the square roots of the diagonal of M, and of G D⁻¹ Gᵀ
-  /// with this diagonal D.
+  /// Sizes of all equations for `BlockFactor::null_vectors`: the square roots of the diagonals of M and of G D⁻¹ Gᵀ,
+  /// where D is the diagonal of M.
   VecX of_equation;
 
   explicit ScaledRows(System& system)
@@ -96,7 +96,7 @@ struct ScaledRows {
     sort_by_row();
   }
 
-  /// Gᵀc of coefficients c of scaled rows, by velocity; the entries have the units of scaled velocities.
+  /// Gᵀc for coefficients c of scaled rows, by velocity; the entries have the units of scaled velocities.
   IndexMap<double> transposed_times(IndexMap<double> const& c) {
     Sequence<Index> touched;
     for (auto const& [row, value] : c) {
@@ -213,7 +213,7 @@ class NullVectors {
     }
   }
 
-  Sequence<IndexMap<double>> vectors;  ///< null vectors c, each coefficient times the size of its equation
+  Sequence<IndexMap<double>> vectors;  ///< null vectors c of the scaled equations
 
  private:
   ScaledRows<> held() {
@@ -254,7 +254,7 @@ class NullVectors {
       }
     }
   }
-  /// Removes value k, which the last one replaces.
+  /// Removes and returns value k. The last value takes its index.
   template <class T>
   static T take_out(Sequence<T>& values, std::size_t k) {
     std::swap(values[k], values.back());
@@ -283,8 +283,9 @@ bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<IndexMap<dou
 
 /// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a previous choice
 /// that remains valid. Equations that are redundant only at x, a singular configuration, are not chosen. Returns true
-/// if the choice has changed. If policies of the model eliminate bodies, nothing is chosen. \param lambda multipliers
-/// of an earlier state, or null: equations whose multiplier is zero were chosen in that state and are preferred
+/// if the choice has changed. Nothing is chosen if the linear equations have other unknowns than a step, as with joint
+/// coordinates. \param lambda multipliers of an earlier state, or null: equations whose multiplier is zero were chosen
+/// in that state and are preferred
 template <class Solver>
 [[gnu::cold]] bool leave_out_redundant(System& system, ForwardDynamics<Solver>& forward, State const& x,
                                        VecX const* lambda = nullptr) {
@@ -305,7 +306,7 @@ template <class Solver>
     forward.hold(system, x.q, x.v, x.t);
   };
   space.keep_dependent();
-  choose();  // after a factorisation with too many dropped rows due to small pivots, this one has the correct rank
+  choose();  // this factorisation has the correct rank; before it, small pivots may have caused too many dropped rows
   if (!space.find()) return true;
   space.keep_dependent();
   space.keep_permanent();

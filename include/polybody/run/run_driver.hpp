@@ -102,7 +102,8 @@ class RunDriver {
   template <class Run>
   StepReport halving_step(State& x, double h, int halvings, Run& run);
 
-  /// Stores step length, row of steps and signs of events in a snapshot. The run then continues as a resumed run.
+  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues as a
+  /// resumed run.
   [[gnu::cold]] void store(RunSnapshot& to) {
     events_.forget();
     to.step = h_;
@@ -123,7 +124,7 @@ class RunDriver {
     std::size_t passed = 0;
     bool searched = false;  // events were evaluated in this step
   };
-  /// Steps of the search for events, from the start of the step.
+  /// Parts of one trial step in the search for events, from the start of the step of the run.
   struct Trial {
     double end = 0.0;
     Sequence<double> lengths = {};

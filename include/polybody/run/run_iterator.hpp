@@ -11,7 +11,7 @@ namespace polybody {
 
 /// Systems of a run: the integrated one, and the full one if policies eliminate unknowns.
 struct RunSystems {
-  std::unique_ptr<System> stepped;  ///< integrated system; by address, since workspaces refer to it
+  std::unique_ptr<System> stepped;  ///< integrated system; a pointer, because workspaces refer to it
   std::unique_ptr<System> full;     ///< full system; null if policies eliminate nothing
   SystemSource questions = {};      ///< for questions about the states of the run
 };

@@ -29,14 +29,14 @@ struct RunOptions {
   std::optional<double> max_step = {};   ///< largest step [s], for an integrator that controls its step
   std::vector<double> breakpoints = {};  ///< breakpoints [s], besides those of driving constraints and loads
   std::vector<Event> events = {};        ///< events that are detected in each step
-  /// Limit of |Φ| at the start [m], [rad]. In an assembly of bodies smaller than one metre, the limit of lengths is
-  /// this value times the extent of the assembly in metres.
+  /// Limit of |Φ| at the start [m], [rad]. If the extent of an assembly of bodies is below one metre, the limit of
+  /// lengths is this value times this extent in metres.
   double assembly_tolerance = 1e-8;
   /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
   /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs. If 0, a failed
   /// step ends the run. The report counts halved steps.
   std::optional<int> max_step_halvings = {};
-  bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state, for one factorisation per step
+  bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state; costs one factorisation per step
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
   int threads = 1;  ///< number of threads in an evaluation, for large models; results are bitwise identical
   std::function<void(RunProgress const&)> progress = {};  ///< called after each step, such as `progress_bar`

@@ -14,7 +14,7 @@ namespace polybody {
 /// order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
   Index coordinates = 0, velocities = 0, rows = 0;  ///< sizes of a step, after elimination
-  Index eliminated_equations = 0;                   ///< number; a step may append estimates of their multipliers
+  Index eliminated_equations = 0;                   ///< number of equations whose multipliers a step estimates
   std::uint64_t names = 0;                          ///< checksum of the names
 
   bool operator==(ModelIdentity const&) const = default;  ///< true if counts and names are equal

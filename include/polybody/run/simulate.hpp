@@ -49,7 +49,7 @@ constexpr void refuse_temporary() {
 }
 }  // namespace detail
 
-/// Refuses a temporary or constant state. The deduced type makes the refusal the first error.
+/// Refuses a temporary or constant state. The return type is deduced so that the compiler reports the refusal first.
 template <LinearSolver Solver = DefaultSolver, class M, Integrator I>
 auto simulate(M const& model, State const&, I const& integrator, RunOptions options) {
   static_assert(std::is_void_v<M>,

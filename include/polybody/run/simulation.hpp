@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Simulation of a model: a range of states with steps that end at breakpoints, events and stop conditions. Member
-/// functions are defined outside the class: a program that links `polybody::compiled` does not compile them again.
+/// Simulation of a model: a range of states with steps that end at grid points, breakpoints, events and the end time.
+/// Member functions are defined outside the class, so that a program that links `polybody::compiled` does not compile
+/// them again.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_force_monitor.hpp>
@@ -16,7 +17,7 @@
 namespace polybody {
 
 /// Input range of states: `for (auto const& now : simulate(…))` gives the initial state and the state at the end of
-/// each step, with answers to questions. The run updates the caller's state. Call begin() once.
+/// each step, each as an `ObservedState`. The run updates the caller's state. Call begin() once.
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
@@ -35,7 +36,7 @@ class Simulation {
   [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }             ///< state at the end of the last step
-  ObservedState const& now() const { return now_; }      ///< this state with answers to questions
+  ObservedState const& now() const { return now_; }      ///< this state with its evaluation
   RunReport const& report() const& { return report_; }   ///< report so far
   RunReport report() && { return std::move(report_); }   ///< the report so far, moved out
   System& system() { return *system_; }                  ///< integrated system: the model, or its reduced system
@@ -176,7 +177,7 @@ class Simulation {
   State* x_;
   Probe probe_;  // a separate system, so that questions do not change the run
   ObservedState now_;
-  State reduced_, seen_;  // reduced and full state with eliminating policies
+  State reduced_, seen_;  // reduced and full state, if policies eliminate unknowns
   MethodOf<I> method_;
   RunOptions options_;
   RunDriver driver_;

@@ -47,8 +47,8 @@ template <class = void>
                                               "reference_state(), and rotate a body by unit quaternions."});
 }
 
-/// \throws InvalidInput naming a body with coordinates or velocities so large that their squares, and therefore
-/// energies, are not finite. \param x state of the full model
+/// \throws InvalidInput naming a body with a coordinate or velocity that is NaN, infinite or above `largest_number`.
+/// Energies of larger numbers can overflow. \param x state of the full model
 template <class = void>
 [[gnu::cold]] void require_computable(System const& system, State const& x) {
   ModelLayout const& full = system.layout();

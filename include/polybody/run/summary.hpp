@@ -125,7 +125,7 @@ std::string force_in_words(ModelLayout const& layout, ForceLayout const& f) {
 
 }  // namespace detail
 
-/// Model summary: counts; a line for each body from the ground outwards with the joint that carries it, indented at
+/// Model summary: counts; a line for each body from the ground outwards, with the joint that carries it, indented at
 /// branches; joints that close loops; bodies without a path of joints to the ground; forces and the bodies on which
 /// they act. Ends with a line break.
 template <class = void>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Low-pass filter without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums;
+/// Low-pass filter (without phase shift) and amplitude spectrum of equally spaced samples, both by Fourier sums;
 /// resampling at equal steps.
 
 #include <algorithm>
@@ -38,7 +38,7 @@ double equal_step(std::span<double const> times, std::string const& who) {
 }
 
 using HalfSpectrum =
-    std::vector<std::complex<double>>;  ///< coefficients of the frequencies 0, 1/T, … up to the Nyquist frequency
+    std::vector<std::complex<double>>;  ///< coefficients of frequencies 0, 1/T, … up to Nyquist's, with the period T
 
 template <class = void>
 HalfSpectrum fourier_terms(std::vector<double> const& values) {
@@ -86,13 +86,13 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
 /// H is 1 up to the cut-off and 0 above it. With a roll-off w, H decreases from f_c to f_c + w as
 /// ½(1 + cos π(f − f_c)/w).
 ///
-/// The Fourier sum is periodic with the record as period. If the ends of the record differ, a sharp cut-off causes
-/// ringing at the ends. With `mirrored`, the period is the record with its mirror image, which is continuous but has a
-/// kink at the ends. A roll-off makes ringing decay sooner.
+/// The Fourier sum is periodic; its period is the length of the record. If the ends of the record differ, a sharp
+/// cut-off causes ringing at the ends. With `mirrored`, one period consists of the record and its mirror image: a
+/// continuous function with a kink at the ends. A roll-off makes ringing decay sooner.
 struct LowPass {
   Required<double> cut_off;  ///< cut-off f_c [Hz]
   double roll_off = 0.0;     ///< roll-off w [Hz]
-  bool mirrored = false;     ///< true: the period is the record with its mirror image
+  bool mirrored = false;     ///< true: one period consists of the record and its mirror image
 
   /// Transfer function H at f [Hz].
   double share(double f) const {
