@@ -1,9 +1,8 @@
 #pragma once
 /// \file
-/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), with x and y
-/// from constraint_functions.hpp.
-///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
-/// Angles are compared modulo a full turn, so that no data are stored between steps.
+/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), where x and y
+///   are constraint functions of constraint_functions.hpp: θ̇ = (x ẏ − y ẋ)/n², n² = x² + y². Angles are compared
+///   modulo a full turn, so that no data are stored between steps.
 
 #include <numbers>
 
@@ -78,7 +77,7 @@ T turn_gamma(ConstraintTerms<2, T> const& xy, Frame<T> const& a, Frame<T> const&
       xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
 }
 
-/// Adds λ ∂²θ of the rotation θ to the wrench gradient k.
+/// Adds the wrench gradient of the rotation θ for the multiplier λ to k.
 template <class = void>  // compiled only if used
 void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec2 const each = angle_gradient(turned(a, b), lambda, k);

@@ -88,7 +88,8 @@ T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
   return (squared_norm(rate) - along * along / d2) / sqrt(d2);
 }
 
-/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, rotations in world axes.
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, with the rotations δφ in world
+/// axes.
 using WrenchGradient = Mat<double, 12, 12>;
 
 /// Adds λ times the gradient of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
@@ -281,10 +282,9 @@ struct FixedDistance {
   }
 };
 
-/// Constraint equations of a joint geometry, in this order. A geometry names its list,
-///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
-/// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
-/// directions follow from the list.
+/// Constraint equations Es of a joint geometry, in the order of their rows. A geometry names its list, using Equations
+///   = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>; Its constraint function with Jacobians, γ,
+///   the wrench gradient, the requirements on its markers and its free directions follow from the list.
 template <class... Es>
 struct EquationList {
   static_assert((ConstraintEquation<Es> && ...),

@@ -56,7 +56,7 @@ struct GeometryRefusal {
   static constexpr bool checked = true;
 };
 
-/// Instantiated for a type that is not a `Policy`.
+/// Checks the members that the concept `Policy` requires, one by one.
 template <class P>
 struct PolicyRefusal {
   template <int... m>
@@ -99,7 +99,8 @@ constexpr auto measured_by() {
     return std::type_identity<G>{};
 }
 
-/// Policy of a joint that is constructed from a geometry alone. The deduced type makes the refusal the first error.
+/// Policy of a joint that is constructed from a geometry alone. The return type is deduced, so that the compiler
+/// reports the failed static_assert first.
 template <class P>
 constexpr auto default_policy() {
   static_assert(std::is_default_constructible_v<P>,
@@ -130,7 +131,7 @@ concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations
 /// parameters, `Joint<G, P>{geometry}` needs no second argument.
 template <class G, class P = Constraint>
 struct Joint {
-  static_assert(sizeof(G) > 0);  // the first use of G, so that its own refusals have a short context
+  static_assert(sizeof(G) > 0);  // first use of G, so that the compiler reports errors in G with a short context
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::checked);
   static_assert(Policy<P> || detail::PolicyRefusal<P>::checked);
   using Geometry = G;    ///< motions that the joint prevents
