@@ -105,8 +105,8 @@ void require_same_study(Study const& study) {
 }  // namespace detail
 
 /// Runs a study like `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
-/// exception. Rank 0, and a rank on which f threw, get the original exception. The other ranks get an IoError with its
-/// message. A single rank uses threads.
+/// exception. A rank on which f threw gets the original exception. If this is not rank 0, then rank 0 gets an Error
+/// that names the rank. The other ranks get an IoError with the message of rank 0. A single rank uses threads.
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
   if (ranks.size() == 1) return study.run(f, options);

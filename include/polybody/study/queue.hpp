@@ -26,7 +26,7 @@ namespace polybody::detail {
 /// Identity of the study to which a record must belong.
 struct RecordKind {
   std::string file;               ///< name of the file, for messages
-  std::vector<std::string> head;  ///< `record_head`
+  std::vector<std::string> head;  ///< lines of the head, from `record_head`
   std::size_t points = 0, outputs = 0;
 };
 
@@ -103,10 +103,10 @@ RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
   return content;
 }
 
-/// Record of one study, locked by this process while it is open. Each line is passed to the system at once, so a
-/// killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation is
-/// at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has not
-/// stored. Not thread-safe.
+/// Record of one study, locked by this process while it is open. Each line is written to the operating system at once,
+/// so a killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation
+/// is at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has
+/// not stored. Not thread-safe.
 class StudyRecord {
  public:
   /// Opens or creates the record, and removes the incomplete line of a killed run.

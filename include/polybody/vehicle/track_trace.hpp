@@ -183,8 +183,8 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// First seat that the track meets, among `start` and the seats in front of it. All other seats are
-/// to the right of the line from `pin` to this seat, whose direction is written to `sight`.
+/// First seat that the track meets, among `start` and the seats in front of it. All other seats are to the right of the
+/// line from `pin` to this seat. The direction of the line is written to `sight`.
 inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
                             TrackSight& sight) {
   int first = start;
