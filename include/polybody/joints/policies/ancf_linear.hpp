@@ -4,11 +4,13 @@
 namespace polybody {
 
 /// Linear joint of ANCF bodies. Its equations contain positions and position gradients, which are linear in the
-/// coordinates, S_a e_a − S_b e_b = c. Dependent coordinates are eliminated before the run. The mass matrix stays
-/// constant, and a time step has no multipliers. Reactions are computed afterwards from the balance of each element
-/// [thesis §3.5.4; Shabana, Hamed, Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the
-/// ground. Spherical (in the plane Revolute): equal positions r. Revolute about n: equal r and r_α, with the material
-/// line α along n. Six equations between bodies with all
+/// coordinates,
+///   S_a e_a − S_b e_b = c.
+/// Dependent coordinates are eliminated before the run. The mass matrix stays constant, and a time step has no
+/// multipliers. Reactions are computed afterwards from the balance of each element [thesis §3.5.4; Shabana, Hamed,
+/// Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
+///   Spherical (in the plane Revolute): equal positions r.
+///   Revolute about n: equal r and r_α, with the material line α along n. Six equations between bodies with all
 ///     gradients.
 ///     For a body with r′ alone (a cable), only the components of r′ along n are equal, n fixed in the world: four
 ///     equations.
