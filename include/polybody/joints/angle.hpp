@@ -1,8 +1,9 @@
 #pragma once
 /// \file
 /// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), where x and y
-///   are constraint functions of constraint_functions.hpp: θ̇ = (x ẏ − y ẋ)/n², n² = x² + y². Angles are compared
-///   modulo a full turn, so that no data are stored between steps.
+/// are constraint functions of constraint_functions.hpp:
+///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
+/// Angles are compared modulo a full turn, so that no data are stored between steps.
 
 #include <numbers>
 

@@ -282,9 +282,10 @@ struct FixedDistance {
   }
 };
 
-/// Constraint equations Es of a joint geometry, in the order of their rows. A geometry names its list, using Equations
-///   = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>; Its constraint function with Jacobians, γ,
-///   the wrench gradient, the requirements on its markers and its free directions follow from the list.
+/// Constraint equations Es of a joint geometry, in the order of their rows. A geometry names its list,
+///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
+/// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
+/// directions follow from the list.
 template <class... Es>
 struct EquationList {
   static_assert((ConstraintEquation<Es> && ...),

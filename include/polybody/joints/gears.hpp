@@ -112,11 +112,11 @@ struct Gear {
   }
 };
 
-/// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation g =
-///   a₁·d − R θ, d = r_b − r_a [Haug 1989, §3.4]. θ is the rotation of b about a₃; it is zero at the reference
-///   configuration if a₁·d is zero. The translation determines the number of full turns. Other joints constrain the
-///   pinion's height over the rack and the direction of its axis. With a rack on the ground, the pinion is a wheel that
-///   rolls.
+/// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation
+///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
+/// θ is the rotation of b about a₃; it is zero at the reference configuration if a₁·d is zero. The translation
+/// determines the number of full turns. Other joints constrain the pinion's height over the rack and the direction of
+/// its axis. With a rack on the ground, the pinion is a wheel that rolls.
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr World world = World::both;
