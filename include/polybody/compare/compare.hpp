@@ -36,7 +36,7 @@ struct Modal {
 };
 
 namespace detail {
-/// Body type and mesh of a formulation's body: a body itself, or one with a mesh.
+/// Body type and mesh of a formulation's body. A body type without `Meshed` or `Modal` has no mesh.
 template <class B>
 struct MeshOf {
   using BodyType = B;

@@ -165,8 +165,8 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   return written;
 }
 
-/// Writes table.csv, `write_histories` and `write_figures` of a comparison to `folder`; gnuplot draws the figures if
-/// `draw` is true. Returns the files.
+/// Writes table.csv and the files of `write_histories` and `write_figures` for a comparison to `folder`. Gnuplot draws
+/// the figures if `draw` is true. Returns the files.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& all, std::filesystem::path const& folder,
                                                 bool draw = true) {
