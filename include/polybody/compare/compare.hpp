@@ -47,8 +47,8 @@ template <class B, int count, int inner>
 struct MeshOf<Modal<B, count, inner>> : Modal<B, count, inner> {};
 }  // namespace detail
 
-/// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case
-/// under several formulations, one line each:
+/// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case under
+/// several formulations, each defined in one line:
 ///
 ///     using Ideal = Formulation<planar::Rigid, Constraint, GeneralisedAlpha>;
 ///     using Cable = Formulation<Meshed<planar::AncfCable<>, 8>, Constraint, GeneralisedAlpha>;
@@ -90,7 +90,7 @@ struct Output {
 /// Scenario of a case for one formulation: model, initial state, options of the run and outputs.
 template <class M>
 struct Scenario {
-  M model;                                                    ///< model with one formulation
+  M model;                                                    ///< model in one formulation
   State start;                                                ///< initial state of the run
   RunOptions options;                                         ///< options of the run
   std::vector<Output<M>> outputs = {};                        ///< outputs to compare

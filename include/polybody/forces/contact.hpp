@@ -14,7 +14,7 @@ namespace polybody {
 template <StateScalar T>
 struct ContactBlend {
   T share = T(1.0);                            ///< weight of this face, in [0, 1]
-  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; `place` moves with a
+  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; `place` moves with body a
   Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) point of action of the added force [m]
 };
 

@@ -26,7 +26,8 @@ concept HasPolicyPotential = requires(P const p, Vec<double, m> const g) {
   { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
 
-/// Checks the members that the concept `JointGeometry` requires, one by one; a and b are frames of a scalar T.
+/// Checks the members that the concept `JointGeometry` requires, one by one. In its messages a and b are frames of the
+/// scalar type T.
 template <class G>
 struct GeometryRefusal {
   static_assert(
@@ -114,7 +115,7 @@ constexpr auto default_policy() {
 template <class P, class G>
 concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::template Measured<G>; };
 
-/// P adds constraint equations, or its force has one component for each equation of its constraint function for G.
+/// Policy P can enforce geometry G: P adds constraint equations, or its force has one component for each equation.
 template <class P, class G>
 concept EnforceableGeometry =
     ConstrainingPolicy<P> ||

@@ -152,7 +152,7 @@ struct ContactLaws {
     for (int k = 0; k < 20; ++k) {
       Touching const near = overlapping(1e-12), far = overlapping(-1.0);
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
-      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // otherwise the test would be useless
+      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // a `may_touch` that is always true fails here
     }
   }  ///< `may_touch` and `reach` include all contacts, and exclude shapes that are clearly apart
 

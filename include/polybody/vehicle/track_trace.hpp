@@ -201,9 +201,9 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`. It is −1
-/// for the next seat while the chain is on the sprocket. It is the number of circles for the seat at the end of the
-/// chain. Sets `heading` to the link's direction.
+/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`, −1 if the
+/// target is the next seat of the sprocket, or the number of circles if it is the seat at the end of the chain. Sets
+/// `heading` to the link's direction.
 ///
 /// Circles inside the track bound a link's turn to the right, and circles outside bound it to the left. They are
 /// visited in their order until a bound crosses the bound of the other side. Then the link runs to the circle of this

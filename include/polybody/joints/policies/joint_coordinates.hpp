@@ -4,7 +4,7 @@
 
 namespace polybody {
 
-/// Solution methods for the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u. All give the same motion.
+/// Solution methods for the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u. All methods give the same motion.
 namespace joint_coordinates {
 /// Sparse augmented system [M, Gᵀ; G, 0] of all bodies. Its solution is projected onto the joint coordinates: T u̇ = v̇
 /// − Ṫu [thesis Eq. 3.5]. With a sparse solver the cost is linear in the number of bodies, for trees and loops.
