@@ -71,7 +71,7 @@ class ContactGroup {
     for_each_pair(frame, visit, 0, many_);
   }
   /// Overload for the markers [begin, end) of the many. frame(i) is the frame of marker i, and visit(i, j, law) is
-  /// called for each pair.
+  /// called for the pairs with `may_touch` true.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))

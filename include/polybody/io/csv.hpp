@@ -41,8 +41,7 @@ class Csv {
   }
 
   /// Adds one row of `values`, a number for each column. Throws InvalidInput, and writes nothing, if the number of
-  /// values differs from the number of columns or a value is not finite. Throws IoError if the system refuses the
-  /// bytes.
+  /// values differs from the number of columns or a value is not finite. Throws IoError if the row cannot be written.
   void row(std::span<double const> values) {
     line_.clear();
     write_row(values, 0);

@@ -106,7 +106,7 @@ T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T>
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
-/// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] under λ to k.
+/// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] for the multiplier λ to k.
 template <class = void>  // compiled only if used
 void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
                              WrenchGradient& k) {

@@ -92,7 +92,8 @@ T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
 /// axes.
 using WrenchGradient = Mat<double, 12, 12>;
 
-/// Adds λ times the gradient of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
+/// Adds λ times the wrench gradient of `perpendicular` to k: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ)
+/// δφ_b.
 template <class = void>  // compiled only if used
 void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
   double const uw = dot(u, w);
@@ -106,7 +107,8 @@ void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchG
     }
 }
 
-/// Adds λ times the gradient of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
+/// Adds λ times the wrench gradient of `no_slide` to k: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b −
+/// δr_a).
 template <class = void>  // compiled only if used
 void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
                        WrenchGradient& k) {
@@ -124,7 +126,7 @@ void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> cons
     }
 }
 
-/// Adds λ times the gradient of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
+/// Adds λ times the wrench gradient of `distance` to k: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
 template <class = void>  // compiled only if used
 void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec3 const d = difference(b.r, a.r);

@@ -12,8 +12,8 @@ namespace polybody {
 /// Driving constraint: b is rotated relative to a by ψ(t) about the common third axis. Use it together with a
 /// Revolute. 1 constraint equation
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
-/// wrapped to [−π, π], so that full turns need no count. If b₁ is in the plane of a₁, a₂ (as with the Revolute), ġ =
-/// a₃·(ω_b − ω_a) − ψ̇ exactly.
+/// wrapped to [−π, π], so that full turns need not be counted. If b₁ is in the plane of a₁, a₂ (as with the Revolute),
+/// ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
 template <class Law>
 struct PrescribedAngle {
   static_assert(detail::require_time_function<Law>());

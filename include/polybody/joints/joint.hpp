@@ -137,7 +137,7 @@ struct Joint {
   static_assert(Policy<P> || detail::PolicyRefusal<P>::checked);
   using Geometry = G;    ///< motions that the joint prevents
   using PolicyType = P;  ///< enforcement of the constraint equations
-  /// Constraint function of the policy: G, or `Measured<G>` of P.
+  /// Constraint function that the policy uses: G, or `Measured<G>` if P defines it.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = constraint_equations<Measured>();
   static_assert(
@@ -149,7 +149,7 @@ struct Joint {
   G geometry = {};                         ///< motions that the joint prevents
   P policy = detail::default_policy<P>();  ///< enforcement of the constraint equations
 
-  /// Constraint function of the policy: the geometry itself for most policies.
+  /// Constraint function that the policy uses: the geometry itself for most policies.
   decltype(auto) measure() const {
     if constexpr (std::is_same_v<Measured, G>)
       return (geometry);

@@ -128,7 +128,8 @@ template <class Solver>
   return report.relaxed = reached;
 }
 
-/// Counts the negative pivots in the present state and adds them to the report, with a warning if there are any.
+/// Counts the negative pivots of the stiffness in the present state. Adds their number to the report, with a warning if
+/// there are any.
 template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;

@@ -133,7 +133,7 @@ class StudyRecord {
   bool torn() const { return content_.torn; }
 
   /// Appends the outcome of a point.
-  /// \throws IoError if the system refuses the bytes, for example if the disk is full. The record then ends with the
+  /// \throws IoError if the line cannot be written, for example if the disk is full. The record then ends with the
   /// previous line.
   void append(std::size_t point, Outcome const& outcome) {
     RecordChain const before = content_.chain;

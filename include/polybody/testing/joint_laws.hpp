@@ -186,7 +186,7 @@ struct JointLawsOf {
 ///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
 ///
 /// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. Tolerances are
-/// relative and include the rounding of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
+/// relative and include the round-off of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
 /// the geometry through `AnyGeometry`, so that a source file compiles them once for all of its geometries.
 template <class Case>
 struct JointLaws : JointLawsOf {

@@ -10,8 +10,8 @@ namespace joint_coordinates {
 /// − Ṫu [thesis Eq. 3.5]. With a sparse solver the cost is linear in the number of bodies, for trees and loops.
 struct Augmented {};
 /// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
-/// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so that they
-/// should be few.
+/// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so the method
+/// is efficient only if they are few.
 struct ArticulatedBody {};
 }  // namespace joint_coordinates
 

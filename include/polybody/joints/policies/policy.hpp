@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Kinds of joint policies. The assembly treats all policies of one kind by the same code.
+/// Kinds of joint policies. The assembly treats all policies of one kind with the same code.
 
 #include <polybody/joints/constraint_terms.hpp>
 
