@@ -16,13 +16,13 @@ namespace polybody {
 
 // Formulation of a mechanism as one type: body formulation with its mesh, constraint policy and integrator.
 
-/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of a
-/// cable, or the number of modes of a floating frame.
+/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of the
+/// body.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
   using BodyType = B;                     ///< body without mesh
-  static constexpr int elements = count;  ///< number of elements or modes, the second argument of `from`
+  static constexpr int elements = count;  ///< number of elements, the second argument of `from`
 };
 
 /// Floating frame of a bar with `count` elements, reduced to the static shapes of its ends and `inner` modes between

@@ -42,12 +42,12 @@ class FileInPlace {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   }
-  /// Writes the buffered bytes to the file; one system call writes up to 4096 bytes. \throws IoError if the bytes cannot be written.
+  /// Writes the buffered bytes to the file; one system call writes up to 4096 bytes. \throws IoError if this fails.
   void flush() {
     errno = 0;
     require(std::fflush(file_.get()) == 0);
   }
-  /// Sets the position of the next write to `place` [bytes from the beginning]. \throws IoError if the position cannot be set.
+  /// Sets the position of the next write to `place` [bytes from the beginning]. \throws IoError if this fails.
   void go_to(std::size_t place) {
     errno = 0;
     require(std::fseek(file_.get(), long(place), SEEK_SET) == 0);

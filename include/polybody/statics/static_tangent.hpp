@@ -17,7 +17,7 @@ namespace polybody {
 /// terms. x contains the increments of the coordinates, then those of the first-order states. f contains the forces,
 /// then the rates of these states. The equations are scaled to A y = b,
 ///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
-/// where u is a power of two of the magnitude of K. Without the scaling, the entries of G, which are near one, would be
+/// with a power of two u of the magnitude of K. Without the scaling, the entries of G, which are near one, would be
 /// lost in the round-off of pivots of 1e14 N/m.
 template <LinearSolver Solver>
 class StaticTangent {
