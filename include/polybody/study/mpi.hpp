@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Studies over the ranks of MPI: the same program as with threads is started by `mpirun -np 4 program`. Rank 0
+/// Studies distributed over the ranks of MPI: `mpirun -np 4 program` starts the same program as for threads. Rank 0
 /// distributes the points to free ranks, computes points itself, and writes the record. The record has the same format
 /// as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all ranks, and
 /// the next run continues the record.

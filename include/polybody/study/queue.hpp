@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Queue of the unfinished points of a study, shared by all threads.
+/// Record file of a study, and the queue of its unfinished points, which all threads share.
 
 #include <fcntl.h>
 #include <sys/file.h>

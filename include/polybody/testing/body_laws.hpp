@@ -41,7 +41,7 @@ namespace polybody::laws {
 /// Derivatives of energies are computed by differences.
 template <class Case>
 struct BodyLaws {
-  using Made = BodyOf<Case>;                                ///< creation of the body by the case
+  using Made = BodyOf<Case>;                                ///< functions that create the body of the case
   using B = decltype(Made::body());                         ///< type of the body
   using D = Dual<1>;                                        ///< dual number with the derivative along one direction
   static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
@@ -129,7 +129,7 @@ struct BodyLaws {
     body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
-  /// Rate δ˙ (nv) of q ⊞ δ at the generalised velocities v.
+  /// Rate δ˙ (nv) with which q ⊞ δ moves at the generalised velocities v.
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));

@@ -175,7 +175,7 @@ struct TrackTrace {
   double length = 0.0;     ///< length of the whole loop in links; a whole number only if the loop closes
 };
 
-/// Number of the seat that points from the sprocket's centre away from the mean centre of the circles.
+/// Number of the seat whose direction from the sprocket's centre is away from the mean centre of the circles.
 inline int track_start(TrackLayout const& layout) {
   Vec2 away = layout.sprocket.centre;
   for (TrackCircle const& c : layout.circles) away -= c.centre / double(layout.circles.size());

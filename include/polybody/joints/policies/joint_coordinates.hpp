@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Joint coordinates: policy for which the relative motion in a joint is the unknown.
+
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/policies/policy.hpp>
 
