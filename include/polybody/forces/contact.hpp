@@ -168,11 +168,11 @@ struct Contact {
     return w;
   }
 
-  /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`. J = [1,
-  /// −ρ×] with the vector ρ from the marker to the point, and N′ = ck ∂N/∂d + cd ∂N/∂ḋ. F′ = cd μ N/√(v² + v_s²) is the
-  /// secant of the friction, which is never less than its derivative, at the slip velocity v. Newton's method therefore
-  /// approaches v = 0 from one side and does not overshoot. The rotation of n, the change of F_t with N, and changes of
-  /// the weights of faces are neglected.
+  /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`.
+  /// J = [1, −ρ×] with the vector ρ from the marker to the point, and N′ = ck ∂N/∂d + cd ∂N/∂ḋ.
+  /// F′ = cd μ N/√(v² + v_s²) with the slip velocity v is the secant of the friction, which is never less than its
+  /// derivative. Newton's method therefore approaches v = 0 from one side and does not overshoot. The rotation of n,
+  /// the change of F_t with N, and changes of the weights of faces are neglected.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {

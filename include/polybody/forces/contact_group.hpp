@@ -26,7 +26,7 @@ class ContactGroup {
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = std::max({Laws::needs...});
-  static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< each law has a potential
+  static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< true if each law has a potential
 
   /// Contact partner of the many markers.
   template <class Law>

@@ -13,8 +13,8 @@ namespace polybody {
 ///   squared |d|² + along_squared (d·axis)² + along d·axis ≥ limit.
 /// A margin for round-off enlarges all regions.
 struct ContactReach {
-  Vec3 origin = Vec3::Zero();  ///< (3), in world axes [m]
-  Vec3 axis = Vec3::UnitZ();   ///< (3), a unit vector in world axes
+  Vec3 origin = Vec3::Zero();  ///< (3) origin of d, world axes [m]
+  Vec3 axis = Vec3::UnitZ();   ///< (3) unit vector, world axes
   double squared = 0.0;        ///< coefficient of |d|² [1]
   double along_squared = 0.0;  ///< coefficient of (d·axis)² [1]
   double along = 0.0;          ///< coefficient of d·axis [m]; [1] if the other coefficients are zero

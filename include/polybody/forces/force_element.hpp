@@ -40,7 +40,7 @@ template <class F>
 concept ForceElement = requires(F const force, std::string const name) {
   requires F::markers >= 1;
   { F::needs } -> std::convertible_to<MarkerKind>;
-  { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
+  { F::is_load } -> std::convertible_to<bool>;  // true: scaled by the load factor of `equilibrium`
   force.check(name);
 } && (WrenchFunction<F> || HasStates<F>);
 

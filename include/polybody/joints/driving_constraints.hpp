@@ -21,7 +21,7 @@ struct PrescribedAngle {
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
-  static constexpr double period = 2.0 * std::numbers::pi;  ///< jumps of the angle by this period are permitted [rad]
+  static constexpr double period = 2.0 * std::numbers::pi;  ///< the angle is determined up to multiples of this [rad]
 
   Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
   TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration

@@ -20,7 +20,7 @@ namespace polybody::laws {
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
 ///       static constexpr double radius;                                       // of the shape about marker a
-///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth); // position of a at this penetration
+///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);   // position of a at this penetration
 ///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b);  // ∂n/∂r_a [1/m]
 ///     };
 ///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");

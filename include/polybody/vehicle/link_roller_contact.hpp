@@ -28,7 +28,7 @@ struct LinkRollerContact {
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
 
   Required<double> pitch;            ///< p, pitch of the link [m]
-  Required<double> half_thickness;   ///< h, from the line between the pins to the face [m]
+  Required<double> half_thickness;   ///< h, distance from the line between the pins to the face [m]
   Required<double> half_width;       ///< half width of the face [m]
   Required<double> radius;           ///< R, radius of the rims [m]
   double handover = 0.03;            ///< ε, half length of the transition between two links [m]
@@ -113,7 +113,7 @@ struct LinkRollerContact {
   template <StateScalar T>
   struct OverEdge {
     T across;          ///< position along the edge, from the middle of the link [m]
-    double side;       ///< sign of x, a factor: 1 at the front edge, −1 at the rear edge
+    double side;       ///< factor 1 at the front edge (x > 0), −1 at the rear edge
     T beyond, height;  ///< distance outwards from the edge, and height above the face [m]
   };
   template <StateScalar T, class Visit>

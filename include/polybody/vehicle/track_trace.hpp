@@ -58,7 +58,7 @@ struct TrackTensioner {
 struct TrackLayout {
   Required<int> links;              ///< number of links in the closed loop
   Required<double> pitch;           ///< p, distance between two pins [m]
-  Required<double> half_thickness;  ///< h, from the line through a link's pins to either face [m]
+  Required<double> half_thickness;  ///< h, distance from the line through a link's pins to either face [m]
   TrackSprocket sprocket;           ///< driven wheel, which pulls the track
   /// Circles in the order in which the track meets them after the sprocket. A wheel that the track may touch twice is
   /// listed twice, for example a wheel that also carries the upper run. A circle that the track does not reach has no
