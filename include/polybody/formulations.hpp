@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Further formulations: interpolations of rotations for LRVF, Cholesky coordinates for ANCF, bodies of variable mass,
-/// and systems from equations of a user.
+/// and systems with user-defined equations of motion.
 
 #include <polybody/bodies/ancf/cholesky_coordinates.hpp>
 #include <polybody/bodies/lrvf/director_interpolation.hpp>

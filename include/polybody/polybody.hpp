@@ -3,15 +3,15 @@
 /// Models, rigid, ANCF and LRVF bodies, joints, forces, integrators, runs, probes, statics, tables and figures. Each
 /// further subject has its own header, because its compile time is large or few programs need it:
 ///   polybody/ffr.hpp           bodies in the floating frame of reference
-///   polybody/formulations.hpp  further formulations of bodies, and systems from equations of a user
+///   polybody/formulations.hpp  further formulations of bodies, and systems with user-defined equations
 ///   polybody/vibration.hpp     modes, buckling, steady rotation, diagnosis of a model
-///   polybody/stress.hpp        stresses during a run, filters, rainflow counts
+///   polybody/stress.hpp        stresses of bodies, filters, rainflow counts
 ///   polybody/gradients.hpp     derivatives of runs with respect to parameters
 ///   polybody/film.hpp          films, pictures of modes, files for ParaView
 ///   polybody/study.hpp         parameter studies, checkpoints
 ///   polybody/vehicle.hpp       tracked vehicles
 ///   polybody/solvers.hpp       further linear solvers
-///   polybody/testing.hpp       test suites for bodies, joints and integrators of a user
+///   polybody/testing.hpp       test suites for user-defined bodies, joints and integrators
 
 #include <polybody/math/compiler.hpp>  // first: an unsuitable compiler gives a single error message
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Linear solvers beside those of polybody.hpp: dense LU, and the sparse LDLᵀ and LU factorisations of Eigen.
+/// Linear solvers in addition to those of polybody.hpp: dense LU, and the sparse LDLᵀ and LU factorisations of Eigen.
 
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>

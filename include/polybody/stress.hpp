@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Stresses of flexible bodies during a run, load histories, and their evaluation: filters, rainflow counts and damage.
+/// Stresses of flexible bodies, stresses of recorded rigid bodies after a run, and their evaluation: filters, rainflow
+/// counts and damage.
 
 #include <polybody/run/body_record.hpp>
 #include <polybody/signals/filter.hpp>

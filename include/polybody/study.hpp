@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Parameter studies on several threads or processes, with records that survive an interruption, and checkpoints of
-/// runs. Requires POSIX.
+/// Parameter studies on several threads, with records that survive an interruption, and checkpoints of runs. For
+/// studies on several processes see study/mpi.hpp. Requires POSIX.
 
 #include <polybody/io/checkpoint.hpp>
 #include <polybody/io/state_table.hpp>

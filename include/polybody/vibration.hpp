@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Modes, damped modes, buckling loads, steady rotation, and `diagnose`, the report on a model and its state. They
-/// include Eigen's eigenvalue solvers.
+/// Modes, damped modes, buckling loads, steady rotation, and `diagnose`, the report on a model and its state. The
+/// headers include Eigen's eigenvalue solvers.
 
 #include <polybody/run/diagnose.hpp>
 #include <polybody/vibration/buckling.hpp>

@@ -16,13 +16,13 @@ namespace polybody {
 
 // Formulation of a mechanism as one type: body formulation with its mesh, constraint policy and integrator.
 
-/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of a
-/// cable, or the number of modes of a floating frame.
+/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of the
+/// body.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
   using BodyType = B;                     ///< body without mesh
-  static constexpr int elements = count;  ///< number of elements or modes, the second argument of `from`
+  static constexpr int elements = count;  ///< number of elements, the second argument of `from`
 };
 
 /// Floating frame of a bar with `count` elements, reduced to the static shapes of its ends and `inner` modes between
@@ -36,7 +36,7 @@ struct Modal {
 };
 
 namespace detail {
-/// Body type and mesh of a formulation's body: a body itself, or one with a mesh.
+/// Body type and mesh of a formulation's body. A body type without `Meshed` or `Modal` has no mesh.
 template <class B>
 struct MeshOf {
   using BodyType = B;
@@ -47,8 +47,8 @@ template <class B, int count, int inner>
 struct MeshOf<Modal<B, count, inner>> : Modal<B, count, inner> {};
 }  // namespace detail
 
-/// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case
-/// under several formulations, one line each:
+/// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case under
+/// several formulations, each defined in one line:
 ///
 ///     using Ideal = Formulation<planar::Rigid, Constraint, GeneralisedAlpha>;
 ///     using Cable = Formulation<Meshed<planar::AncfCable<>, 8>, Constraint, GeneralisedAlpha>;
@@ -90,7 +90,7 @@ struct Output {
 /// Scenario of a case for one formulation: model, initial state, options of the run and outputs.
 template <class M>
 struct Scenario {
-  M model;                                                    ///< model with one formulation
+  M model;                                                    ///< model in one formulation
   State start;                                                ///< initial state of the run
   RunOptions options;                                         ///< options of the run
   std::vector<Output<M>> outputs = {};                        ///< outputs to compare

@@ -113,7 +113,7 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
 }
 
 /// Histories of a run: violations, energies and the largest joint force, then the outputs. An output with the name of
-/// another history replaces it.
+/// another history replaces that history.
 template <class = void>
 std::vector<History> histories(ComparedRun const& run) {
   std::vector<History> all;

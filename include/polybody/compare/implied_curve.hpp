@@ -21,7 +21,7 @@ inline double implied_torsion(SectionTurn const& s) {
   return s.K[0] + (s.K[1] * s.dK[2] - s.K[2] * s.dK[1]) / (s.K[1] * s.K[1] + s.K[2] * s.K[2]);
 }
 
-/// Angle along a bar: its value [rad] and its first two derivatives by arc length.
+/// Angle along a bar: its value [rad] and its first two derivatives with respect to arc length.
 struct AngleAlong {
   double value = 0.0, slope = 0.0, second = 0.0;  ///< [rad], [rad/m], [rad/m²]
 };

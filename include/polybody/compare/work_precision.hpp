@@ -12,7 +12,7 @@ struct WorkPoint {
   long steps = 0;            ///< number of steps of the run
   double cpu = 0.0;          ///< CPU time of the steps [s]
   double error = 0.0;        ///< error in the unit of the output, see `work_precision`
-  std::string failure = {};  ///< message of a failed run, in which only the setting is valid; otherwise empty
+  std::string failure = {};  ///< message of a failed run, whose results are invalid; empty if the run is complete
 };
 
 /// Work-precision curve: all runs of one formulation.

@@ -14,7 +14,7 @@ namespace polybody {
 template <StateScalar T>
 struct ContactBlend {
   T share = T(1.0);                            ///< weight of this face, in [0, 1]
-  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; `place` moves with a
+  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; `place` moves with body a
   Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) point of action of the added force [m]
 };
 
@@ -63,8 +63,8 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
-/// Regularised Coulomb friction −μ N v/√(v² + v_s²) at the slip velocity v. Instead of sticking, bodies creep at less
-/// than v_s.
+/// Regularised Coulomb friction −μ N v/√(v² + v_s²) at the slip velocity v. Bodies do not stick: under a tangential
+/// force F < μ N they creep with v = v_s F/√(μ²N² − F²).
 struct Friction {
   double coefficient = 0.0;  ///< coefficient of friction μ [1]
   double slip_speed = 0.0;   ///< v_s [m/s]; must be positive if μ is positive
@@ -169,10 +169,10 @@ struct Contact {
   }
 
   /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`.
-  /// J = [1, −ρ×] with the vector ρ from the marker to the point, and N′ is the derivative of the normal force.
-  /// F′ = μ N/√(v² + v_s²) is the secant of the friction, which is never less than its derivative. Newton's method
-  /// therefore approaches v = 0 from one side and does not overshoot. The rotation of n, the change of F_t with N, and
-  /// changes of the weights of faces are neglected.
+  /// J = [1, −ρ×] with the vector ρ from the marker to the point, and N′ = ck ∂N/∂d + cd ∂N/∂ḋ.
+  /// F′ = cd μ N/√(v² + v_s²) with the slip velocity v is the secant of the friction, which is never less than its
+  /// derivative. Newton's method therefore approaches v = 0 from one side and does not overshoot. The rotation of n,
+  /// the change of F_t with N, and changes of the weights of faces are neglected.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {

@@ -26,7 +26,7 @@ class ContactGroup {
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = std::max({Laws::needs...});
-  static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< each law has a potential
+  static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< true if each law has a potential
 
   /// Contact partner of the many markers.
   template <class Law>
@@ -60,7 +60,7 @@ class ContactGroup {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
   }
 
-  /// Calls visit(i, marker, law) for each pair of one of the many markers, i, and a partner, at any distance.
+  /// Calls visit(i, marker, law) for each marker i of the many and each partner, at any distance.
   template <class Visit>
   void for_each_candidate(Visit&& visit) const {
     for (Index i = 0; i < many_; ++i) for_each_partner([&](auto const& few) { visit(i, few.marker, few.law); });
@@ -70,8 +70,8 @@ class ContactGroup {
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// Overload for the markers [begin, end) of the many: frame(i) is the frame of marker i, and visit(i, j, law) is
-  /// called for a pair.
+  /// Overload for the markers [begin, end) of the many. frame(i) is the frame of marker i, and visit(i, j, law) is
+  /// called for the pairs with `may_touch` true.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))
@@ -120,7 +120,7 @@ class ContactGroup {
       bit <<= 1;
     });
   }
-  /// Visits the partners under one law that may touch marker i, and removes the bits of these partners.
+  /// Visits the partners in `few`, which have the same law type, if they may touch marker i. Removes the bits of `few`.
   template <class Few, class FrameOf, class Visit>
   static void visit_near(Few const& few, FrameOf& frame, Visit& visit, Index i, std::uint64_t& bits) {
     std::size_t const n = few.size();

@@ -11,13 +11,13 @@ namespace polybody {
 
 /// Quadratic region of possible contact. A contact does not touch a marker at the vector d from `origin` if
 ///   squared |d|² + along_squared (d·axis)² + along d·axis ≥ limit.
-/// All limits include a margin for round-off.
+/// A margin for round-off enlarges all regions.
 struct ContactReach {
-  Vec3 origin = Vec3::Zero();  ///< (3), in world axes [m]
-  Vec3 axis = Vec3::UnitZ();   ///< (3), a unit vector in world axes
+  Vec3 origin = Vec3::Zero();  ///< (3) origin of d, world axes [m]
+  Vec3 axis = Vec3::UnitZ();   ///< (3) unit vector, world axes
   double squared = 0.0;        ///< coefficient of |d|² [1]
   double along_squared = 0.0;  ///< coefficient of (d·axis)² [1]
-  double along = 0.0;          ///< coefficient of d·axis [m], without unit if the others are zero
+  double along = 0.0;          ///< coefficient of d·axis [m]; [1] if the other coefficients are zero
   double limit = 0.0;          ///< limit [m²], or [m] if the other coefficients are zero
 
   /// Sphere of radius `radius` [m] about `origin`.

@@ -40,7 +40,7 @@ template <class F>
 concept ForceElement = requires(F const force, std::string const name) {
   requires F::markers >= 1;
   { F::needs } -> std::convertible_to<MarkerKind>;
-  { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
+  { F::is_load } -> std::convertible_to<bool>;  // true: scaled by the load factor of `equilibrium`
   force.check(name);
 } && (WrenchFunction<F> || HasStates<F>);
 
@@ -75,8 +75,8 @@ constexpr void require_kinematics() {
 
 /// True if the matrix of a time step contains blocks that couple the bodies of a force element's markers. With the
 /// member `static constexpr bool couples_bodies = false`, the matrix contains only the stiffness of each body. Contacts
-/// with many candidates have this member: the sparsity pattern and the elimination order
-/// are then independent of the touching candidates.
+/// with many candidates have this member: the sparsity pattern and the elimination order then do not depend on which
+/// candidates touch.
 template <class F>
 constexpr bool couples_bodies() {
   if constexpr (requires { F::couples_bodies; })
@@ -128,7 +128,7 @@ void seed_frame(Frame<double> const& f, int first, double ck, double cd, Frame<D
     }
   }
 }
-/// Frames of all markers as functions of their poses and twists, one after another.
+/// Frames of all markers with their derivatives by `seed_frame`. Marker k has the directions 6k to 6k + 5.
 template <int n, std::size_t markers>
 std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, markers> const& frames, double ck,
                                                   double cd) {
@@ -136,7 +136,7 @@ std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, mark
   for (std::size_t k = 0; k < markers; ++k) seed_frame(frames[k], 6 * int(k), ck, cd, moved[k]);
   return moved;
 }
-/// Copies the derivatives of the wrenches, 6N×n, to the first rows of `gradient`.
+/// Copies the derivatives of the wrenches on N markers, 6N×n, to the first 6N rows of `gradient`.
 template <int n, std::size_t markers, int rows>
 void copy_slopes(std::array<Wrench<Dual<n>>, markers> const& w, Mat<double, rows, n>& gradient) {
   for (std::size_t k = 0; k < markers; ++k)
@@ -149,8 +149,8 @@ void copy_slopes(std::array<Wrench<Dual<n>>, markers> const& w, Mat<double, rows
 
 }  // namespace detail
 
-/// Tangent of all wrenches with respect to the poses and twists of the frames, ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N, by
-/// one evaluation with dual numbers.
+/// Tangent of all wrenches with respect to the poses and twists of the frames, ck ∂w/∂pose + cd ∂w/∂twist (6N×6N for N
+/// markers), by one evaluation with dual numbers.
 template <ForceElement F>
 Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
                                                             std::array<Frame<double>, F::markers> const& frames,

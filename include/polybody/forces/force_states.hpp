@@ -38,7 +38,8 @@ struct TangentFactors {
   double pose, twist, states;  ///< factor of each derivative; zero omits the derivative
 };
 
-/// Tangent of wrenches and rates, in this order, with respect to the frames and the states, (6N + S)×(6N + S).
+/// Tangent of wrenches and rates, in this order, with respect to the frames and the states: (6N + S)×(6N + S) for N
+/// markers and S states.
 template <HasStates F>
 Mat<double, 6 * F::markers + F::states, 6 * F::markers + F::states> gradient_with_states(
     F const& force, std::array<Frame<double>, F::markers> const& frames, std::array<double, F::states> const& z,

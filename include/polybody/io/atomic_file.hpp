@@ -17,14 +17,14 @@
 namespace polybody {
 
 /// Output file that is written to a temporary file in the same folder and renamed on `close()`. A reader finds the old
-/// file or the complete new file, also after a loss of power (fsync). The new file gets the permissions of the file
+/// file or the complete new file, even after a loss of power (fsync). The new file gets the permissions of the file
 /// that it replaces. On Linux a killed program leaves no temporary file. If the file system has no unnamed files
 /// (O_TMPFILE), a killed program leaves ".polybody-<16 hex digits>.tmp", which may be removed. The destructor closes
 /// and renames an open file. If a write has failed, or if an exception is in flight and `keep_on_exception()` was not
 /// called, the destructor removes the temporary file instead. An existing file then remains unchanged. Move-only.
 class AtomicFile {
  public:
-  /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its target
+  /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, even if its target
   /// does not exist yet. Throws IoError with the file name and the system's reason if the file cannot be created.
   /// Reasons include a name that is too long, links that form a loop, and a `file` that exists and is not a regular
   /// file.
@@ -75,8 +75,8 @@ class AtomicFile {
     }
   }
 
-  /// Appends `bytes`. Throws IoError if the system refuses them (for example if the disk is full), and InvalidInput
-  /// if the file is closed.
+  /// Appends `bytes`. Throws IoError if they cannot be written (for example if the disk is full), and InvalidInput if
+  /// the file is closed.
   void write(std::string_view bytes) {
     if (!is_open())
       throw InvalidInput("file.closed",

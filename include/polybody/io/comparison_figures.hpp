@@ -61,7 +61,7 @@ std::string_view unit_in(std::string_view name) {
   return unit == name.npos || !name.ends_with(']') ? std::string_view() : name.substr(unit + 1);
 }
 
-/// Largest minus smallest value of output i in the first run. If the output is constant, its magnitude.
+/// Largest minus smallest value of output i in the first run, or the magnitude of a constant output.
 template <class = void>
 double own_span(Comparison const& c, std::size_t i) {
   auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);

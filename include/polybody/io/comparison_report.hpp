@@ -125,12 +125,12 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
   return written;
 }
 
-/// Draws the histories of all runs in `folder`:
+/// Draws the histories of all runs as figures in `folder`:
 ///   `outputs`      each output and its difference from the first run, largest relative difference first
 ///   `violations`   of positions, velocities and accelerations
 ///   `joint_force`  largest joint force
 ///   `energies`     kinetic, potential and total energy
-///   `cost`         difference of each run from the first, over its computing time
+///   `cost`         largest difference of each run from the first run, over the computing time
 ///
 /// A page has six panels; further pages are `outputs_2`, …. Each figure consists of .dat and .gp, and of .png if
 /// gnuplot is found and `draw` is true. A figure without data is not written. Returns the files. Throws InvalidInput
@@ -165,8 +165,8 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   return written;
 }
 
-/// Writes table.csv, `write_histories` and `write_figures` of a comparison to `folder`; gnuplot draws the figures if
-/// `draw` is true. Returns the files.
+/// Writes table.csv and the files of `write_histories` and `write_figures` for a comparison to `folder`. Gnuplot draws
+/// the figures if `draw` is true. Returns the files.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& all, std::filesystem::path const& folder,
                                                 bool draw = true) {

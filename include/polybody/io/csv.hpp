@@ -27,7 +27,7 @@ namespace polybody {
 /// the rows written so far, if there are any (see `Keeps`). Move-only.
 class Csv {
  public:
-  /// Result of an exception during the writing. `rows`: a file with the rows written so far. `full_table`: no file.
+  /// Result if an exception interrupts the writing. `rows`: a file with the rows written so far. `full_table`: no file.
   enum class Keeps { rows, full_table };
 
   /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").
@@ -41,8 +41,7 @@ class Csv {
   }
 
   /// Adds one row of `values`, a number for each column. Throws InvalidInput, and writes nothing, if the number of
-  /// values differs from the number of columns or a value is not finite. Throws IoError if the system refuses the
-  /// bytes.
+  /// values differs from the number of columns or a value is not finite. Throws IoError if the row cannot be written.
   void row(std::span<double const> values) {
     line_.clear();
     write_row(values, 0);

@@ -179,7 +179,7 @@ struct FilmOptions {
   double frames_per_second = 30.0;  ///< frames per second of simulated time [1/s]
   /// (3) direction from the scene to the camera in world axes (empty: (−2, −3, 1.5), or z if all scenes are planar).
   std::optional<Vec3> look_from = {};
-  std::optional<Vec3> up = {};  ///< (3) upward direction in world axes (empty: z, or y if planar)
+  std::optional<Vec3> up = {};  ///< (3) upward direction in world axes (empty: z, or y if all are planar)
   std::string follow = {};      ///< name of the part that the camera follows; empty: none
   /// Position of the grid: below the scene and normal to `up`, or behind the scene and normal to `look_from`. Empty:
   /// below, or behind if all scenes are planar.

@@ -9,7 +9,7 @@ namespace polybody {
 
 /// Adds an arrow for each joint to the last frame of a scene: the force on the joint's second body, at the second
 /// marker.
-/// \param unit force that the unit of the arrows stands for [N], 1000 for kN
+/// \param unit size of the arrows' unit of force [N]: 1000 for arrows in kN
 /// \throws InvalidInput, NonFiniteValue like `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, ObservedState const& now, double unit = 1.0) {
@@ -24,7 +24,7 @@ void add_reactions(FilmScene& scene, FilmArrows arrows, ObservedState const& now
 
 /// Returns a visitor for `for_each_contact` that adds an arrow for each contact point: the force on the body of the
 /// contact group, not on its partner.
-/// \param unit force that the unit of the arrows stands for [N], 1000 for kN
+/// \param unit size of the arrows' unit of force [N]: 1000 for arrows in kN
 template <class = void>
 TouchingPointVisit add_contacts(FilmScene& scene, FilmArrows arrows, double unit = 1.0) {
   return [&scene, arrows, unit](TouchingPoint const& p) { scene.arrow(arrows, p.place, p.force / unit); };

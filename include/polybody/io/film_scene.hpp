@@ -191,7 +191,7 @@ class FilmScene {
   std::string const& name() const { return name_; }            ///< name given to `Film::scene`
   std::vector<double> const& times() const { return times_; }  ///< times of the frames [s]
   bool planar() const { return planar_; }                      ///< true if all bodies with a shape are planar
-  /// Names of the bodies without a shape, if frames are recorded by a `Visual`.
+  /// Names of the bodies without a shape, if the first frame is that of a `Visual`.
   std::vector<std::string> const& invisible() const { return invisible_; }
 
   /// \name Data that a film writes

@@ -194,9 +194,9 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 }  // namespace detail
 
 /// Draws several figures in one PNG, row by row in `columns` columns. Each panel has the size of the largest figure.
-/// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` and gnuplot is on PATH, .png. Each file
-/// appears when it is complete. Throws InvalidInput naming the figure and the curve, before a file is written; IoError
-/// if writing or gnuplot fails.
+/// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` is true and gnuplot is on PATH, .png.
+/// Each file appears when it is complete. Throws InvalidInput naming the figure and the curve, before a file is
+/// written; IoError if writing or gnuplot fails.
 template <class = void>
 DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
                         bool draw = true) {
@@ -245,7 +245,7 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
   return DrawResult::png;
 }
 
-/// Writes one figure to `stem`.dat, .gp and, if `draw`, .png; see `write_panels`.
+/// Writes one figure to `stem`.dat, .gp and possibly .png, like `write_panels`.
 template <class = void>
 DrawResult write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);

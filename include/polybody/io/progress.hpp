@@ -47,8 +47,8 @@ class Progress {
   Progress(double start, double end, std::string label = "")
       : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
 
-  /// Progress bar with this `label` from `start` to `end`, on a stream `out` and by a `clock`. The bar is drawn only if
-  /// `terminal` is true.
+  /// Progress bar with this `label` from `start` to `end`, drawn on the stream `out`. `clock` measures the elapsed
+  /// time. The bar is drawn only if `terminal` is true.
   Progress(double start, double end, std::string label, std::ostream& out, bool terminal, Clock clock = steady_seconds)
       : start_(start),
         end_(end),

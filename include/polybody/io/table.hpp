@@ -42,8 +42,8 @@ struct Table {
 
 namespace detail {
 
-/// Index of the first character after leading single quotes, if a spreadsheet recognises a formula by it (=, +, -, @);
-/// otherwise npos.
+/// Index of the first character that is not a single quote, if a spreadsheet evaluates texts that begin with it as
+/// formulas (=, +, -, @); otherwise npos.
 inline std::size_t formula_in(std::string_view text) {
   std::size_t const first = text.find_first_not_of('\'');
   bool const is_formula = first != text.npos && std::string_view("=+-@").find(text[first]) != std::string_view::npos;

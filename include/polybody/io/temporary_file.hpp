@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Temporary file of an AtomicFile, and its POSIX calls. On systems without POSIX the file has a name from the
-/// beginning, and the system decides when its bytes are written to the disk.
+/// beginning, and the operating system decides when its bytes are written to the disk.
 
 #if __has_include(<unistd.h>)
 #include <fcntl.h>
@@ -69,7 +69,7 @@ class TemporaryFile {
   }
 
   /// Writes all bytes to the disk, so after a loss of power either the old file or the complete new file exists.
-  /// Returns false if the system refuses; errno contains the reason.
+  /// Returns false if the bytes cannot be written; errno contains the reason.
   bool flush() const {
     if (std::fflush(file_) != 0) return false;
 #if __has_include(<unistd.h>)
@@ -77,8 +77,7 @@ class TemporaryFile {
 #endif
     return true;
   }
-  /// Closes the file and renames it to its target. If the system refuses, removes the file and returns the system's
-  /// reason.
+  /// Closes the file and renames it to its target. If one of these fails, removes the file and returns the reason.
   std::error_code put_in_place() {
     if (!is_named_ && !give_name()) {
       std::error_code const reason(errno, std::generic_category());

@@ -27,7 +27,7 @@ namespace polybody {
 class FileInPlace {
  public:
   /// Creates `file`, which is empty, and its parent folders.
-  /// \throws IoError if the system refuses.
+  /// \throws IoError if the file cannot be created.
   explicit FileInPlace(std::filesystem::path const& file) : name_(file.string()) {
     std::error_code reason;
     std::filesystem::create_directories(file.parent_path(), reason);
@@ -37,18 +37,17 @@ class FileInPlace {
   }
 
   /// Writes `bytes` at the current position.
-  /// \throws IoError if the system refuses.
+  /// \throws IoError if the bytes cannot be written.
   void write(std::string_view bytes) {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   }
-  /// Writes the buffered bytes to the system; up to 4096 bytes are one system call. \throws IoError if the system
-  /// refuses.
+  /// Writes the buffered bytes to the file; one system call writes up to 4096 bytes. \throws IoError if this fails.
   void flush() {
     errno = 0;
     require(std::fflush(file_.get()) == 0);
   }
-  /// Sets the position of the next write to `place` [bytes from the beginning]. \throws IoError if the system refuses.
+  /// Sets the position of the next write to `place` [bytes from the beginning]. \throws IoError if this fails.
   void go_to(std::size_t place) {
     errno = 0;
     require(std::fseek(file_.get(), long(place), SEEK_SET) == 0);

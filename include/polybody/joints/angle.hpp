@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), with x and y
-/// from constraint_functions.hpp.
+/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), where x and y
+/// are constraint functions of constraint_functions.hpp:
 ///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
 /// Angles are compared modulo a full turn, so that no data are stored between steps.
 
@@ -78,7 +78,7 @@ T turn_gamma(ConstraintTerms<2, T> const& xy, Frame<T> const& a, Frame<T> const&
       xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
 }
 
-/// Adds λ ∂²θ of the rotation θ to the wrench gradient k.
+/// Adds the wrench gradient of the rotation θ for the multiplier λ to k.
 template <class = void>  // compiled only if used
 void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec2 const each = angle_gradient(turned(a, b), lambda, k);
@@ -106,7 +106,7 @@ T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T>
   return no_slide_gamma<T>(u, a, b) - p * turn_gamma<T>(turned(a, b), a, b);
 }
 
-/// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] under λ to k.
+/// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] for the multiplier λ to k.
 template <class = void>  // compiled only if used
 void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
                              WrenchGradient& k) {

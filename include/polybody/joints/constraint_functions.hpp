@@ -88,10 +88,12 @@ T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
   return (squared_norm(rate) - along * along / d2) / sqrt(d2);
 }
 
-/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, rotations in world axes.
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, with the rotations δφ in world
+/// axes.
 using WrenchGradient = Mat<double, 12, 12>;
 
-/// Adds λ times the gradient of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
+/// Adds λ times the wrench gradient of `perpendicular` to k: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ)
+/// δφ_b.
 template <class = void>  // compiled only if used
 void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
   double const uw = dot(u, w);
@@ -105,7 +107,8 @@ void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchG
     }
 }
 
-/// Adds λ times the gradient of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
+/// Adds λ times the wrench gradient of `no_slide` to k: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b −
+/// δr_a).
 template <class = void>  // compiled only if used
 void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
                        WrenchGradient& k) {
@@ -123,7 +126,7 @@ void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> cons
     }
 }
 
-/// Adds λ times the gradient of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
+/// Adds λ times the wrench gradient of `distance` to k: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
 template <class = void>  // compiled only if used
 void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec3 const d = difference(b.r, a.r);
@@ -281,7 +284,7 @@ struct FixedDistance {
   }
 };
 
-/// Constraint equations of a joint geometry, in this order. A geometry names its list,
+/// Constraint equations Es of a joint geometry, in the order of their rows. A geometry names its list,
 ///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
 /// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
 /// directions follow from the list.

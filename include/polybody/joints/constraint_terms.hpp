@@ -84,13 +84,13 @@ constexpr int constraint_equations() {
     return 0;
 }
 
-/// Geometry with its own function `constraint_function`, which precedes that of a list.
+/// Geometry with its own function `constraint_function`, which is used instead of that of its list.
 template <class G>
 concept HasOwnConstraintFunction = requires(G const g, Frame<double> const a, double t) {
   { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<constraint_equations<G>()>>;
 };
 
-/// Geometry with its own function `gamma`, which precedes that of a list.
+/// Geometry with its own function `gamma`, which is used instead of that of its list.
 template <class G>
 concept HasOwnGamma = requires(G const g, Frame<double> const a, double t) {
   { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, constraint_equations<G>()>>;
@@ -180,8 +180,8 @@ constexpr FreeDirections free_of_list() {
 }
 }  // namespace detail
 
-/// Geometry with a list whose equations prevent motions along and about axes of the joint. The axes of two free
-/// rotations move relative to each other; a geometry with two has no free directions.
+/// Geometry with a list whose equations prevent motions along and about axes of the joint. A geometry with two free
+/// rotations is excluded, since the axes of these rotations move relative to each other.
 template <class G>
 concept ListsFreeDirections = !HasOwnConstraintFunction<G> && requires {
   requires G::Equations::along_axes && free_turns(detail::free_of_list<G>()) != 2;

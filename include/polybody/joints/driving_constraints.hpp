@@ -12,8 +12,8 @@ namespace polybody {
 /// Driving constraint: b is rotated relative to a by ψ(t) about the common third axis. Use it together with a
 /// Revolute. 1 constraint equation
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
-/// wrapped to [−π, π], so that full turns need no count. If b₁ is in the plane of a₁, a₂ (as with the Revolute), ġ =
-/// a₃·(ω_b − ω_a) − ψ̇ exactly.
+/// wrapped to [−π, π], so that full turns need not be counted. If b₁ is in the plane of a₁, a₂ (as with the Revolute),
+/// ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
 template <class Law>
 struct PrescribedAngle {
   static_assert(detail::require_time_function<Law>());
@@ -21,7 +21,7 @@ struct PrescribedAngle {
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
-  static constexpr double period = 2.0 * std::numbers::pi;  ///< jumps of the angle by this period are permitted [rad]
+  static constexpr double period = 2.0 * std::numbers::pi;  ///< the angle is determined up to multiples of this [rad]
 
   Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
   TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration

@@ -26,7 +26,8 @@ concept HasPolicyPotential = requires(P const p, Vec<double, m> const g) {
   { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
 
-/// Checks the members that the concept `JointGeometry` requires, one by one; a and b are frames of a scalar T.
+/// Checks the members that the concept `JointGeometry` requires, one by one. In its messages a and b are frames of the
+/// scalar type T.
 template <class G>
 struct GeometryRefusal {
   static_assert(
@@ -56,7 +57,7 @@ struct GeometryRefusal {
   static constexpr bool checked = true;
 };
 
-/// Instantiated for a type that is not a `Policy`.
+/// Checks the members that the concept `Policy` requires, one by one.
 template <class P>
 struct PolicyRefusal {
   template <int... m>
@@ -99,7 +100,8 @@ constexpr auto measured_by() {
     return std::type_identity<G>{};
 }
 
-/// Policy of a joint that is constructed from a geometry alone. The deduced type makes the refusal the first error.
+/// Policy of a joint that is constructed from a geometry alone. The return type is deduced, so that the compiler
+/// reports the failed static_assert first.
 template <class P>
 constexpr auto default_policy() {
   static_assert(std::is_default_constructible_v<P>,
@@ -113,7 +115,7 @@ constexpr auto default_policy() {
 template <class P, class G>
 concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::template Measured<G>; };
 
-/// P adds constraint equations, or its force has one component for each equation of its constraint function for G.
+/// Policy P can enforce geometry G: P adds constraint equations, or its force has one component for each equation.
 template <class P, class G>
 concept EnforceableGeometry =
     ConstrainingPolicy<P> ||
@@ -130,12 +132,12 @@ concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations
 /// parameters, `Joint<G, P>{geometry}` needs no second argument.
 template <class G, class P = Constraint>
 struct Joint {
-  static_assert(sizeof(G) > 0);  // the first use of G, so that its own refusals have a short context
+  static_assert(sizeof(G) > 0);  // first use of G, so that the compiler reports errors in G with a short context
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::checked);
   static_assert(Policy<P> || detail::PolicyRefusal<P>::checked);
   using Geometry = G;    ///< motions that the joint prevents
   using PolicyType = P;  ///< enforcement of the constraint equations
-  /// Constraint function of the policy: G, or `Measured<G>` of P.
+  /// Constraint function that the policy uses: G, or `Measured<G>` if P defines it.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = constraint_equations<Measured>();
   static_assert(
@@ -147,7 +149,7 @@ struct Joint {
   G geometry = {};                         ///< motions that the joint prevents
   P policy = detail::default_policy<P>();  ///< enforcement of the constraint equations
 
-  /// Constraint function of the policy: the geometry itself for most policies.
+  /// Constraint function that the policy uses: the geometry itself for most policies.
   decltype(auto) measure() const {
     if constexpr (std::is_same_v<Measured, G>)
       return (geometry);

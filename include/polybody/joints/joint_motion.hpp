@@ -19,7 +19,7 @@ struct JointMotion {
     ball    ///< about all axes, a unit quaternion; generalised velocities in the axes of frame b [rad/s]
   };
   Kind kind = Kind::slide;  ///< type of motion
-  int axis = 2;             ///< 0, 1 or 2
+  int axis = 2;             ///< index of the axis: 0, 1 or 2
   double pitch = 0.0;       ///< pitch of a screw: translation per radian [m/rad]
 
   int coordinates() const { return kind == Kind::ball ? 4 : 1; }

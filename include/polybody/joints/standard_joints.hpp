@@ -18,7 +18,7 @@ struct Spherical {
   Mat3 triad() const { return identity(); }
 };
 
-/// Revolute joint in space: two points coincide and the axis stays parallel. 5 constraint equations
+/// Revolute joint in space: two points coincide and the axes of a and b stay parallel. 5 constraint equations
 ///   g = [r_b − r_a; a₁·b₃; a₂·b₃]   [thesis §3.5.1, the special case of the spherical joint].
 /// The second marker needs only an axis. A cable, whose markers have only a tangent, can be the second body if the
 /// joint axis is along the tangent (a clamp).

@@ -15,7 +15,7 @@ namespace polybody {
 
 /// Options of `equilibrium_path`: step lengths, number of points and Newton iteration.
 struct ArcLengthOptions {
-  double step = 0.05;       ///< first step, an arc length; the load factor increases by step/√2 at first
+  double step = 0.05;       ///< first step, an arc length [1]; the load factor increases by step/√2 at first
   double max_step = 0.05;   ///< largest step, an arc length [1]
   double min_step = 1e-6;   ///< smallest step, an arc length [1]
   int points = 200;         ///< largest number of points

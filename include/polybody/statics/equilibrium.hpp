@@ -128,7 +128,8 @@ template <class Solver>
   return report.relaxed = reached;
 }
 
-/// Counts the negative pivots in the present state and adds them to the report, with a warning if there are any.
+/// Counts the negative pivots of the stiffness in the present state. Adds their number to the report, with a warning if
+/// there are any.
 template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;
@@ -201,7 +202,8 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
 }
 
 /// Follows the path again from `start`, by minimum-norm corrections. Returns true if the path ends in equilibrium. The
-/// last corrections use the tangent at the end of the path; the report names the motions and constraints with springs.
+/// last corrections use the tangent at the end of the path; the report names the motions and constraints to which
+/// springs were added.
 template <class Solver>
 bool follow_least(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                   EquilibriumReport& report) {
@@ -216,8 +218,8 @@ bool follow_least(EquilibriumPath<Solver>& path, State const& start, Equilibrium
   return true;
 }
 
-/// Treats an unstable state that was reached only by step halving. The end of the damped motion from `start` replaces
-/// this state if it is stable.
+/// Treats an unstable state that was reached only by step halving. If the damped motion from `start` ends in a stable
+/// state, that state replaces the unstable one.
 template <class Solver>
 [[gnu::cold]] void relax_unstable(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                                   EquilibriumReport& report) {

@@ -38,7 +38,8 @@ struct EquilibriumReport {
   std::vector<std::string> redundant = {};
   /// Number of negative eigenvalues of the tangent stiffness, symmetrised, on the motions that the constraint equations
   /// permit. It is 0 in a stable state. A state with a positive number is unstable. −1 means not computed: the model
-  /// has first-order states, the state is a steady rotation, or one long mechanism has more than some 10⁵ coordinates.
+  /// has first-order states, the state is a steady rotation, or the matrix is too large (one long mechanism with more
+  /// than some 10⁵ coordinates).
   int negative_pivots = 0;
   double limit_point = 0.0;  ///< load factor of a limit point or branch point on the path from the start; 0: none found
   bool relaxed = false;      ///< true: Newton's method did not converge; a damped motion found the state

@@ -126,7 +126,7 @@ class NullSpace {
   }
 
   /// Selects one unknown for each vector by elimination with complete pivoting. Of equal entries the last one is
-  /// selected, so that the joint connected last is redundant.
+  /// selected, so that the joint connected last counts as redundant.
   void choose(Sequence<Index>& pins) {
     pins.clear();
     for (std::size_t k = 0; k < vectors_.size(); ++k) {

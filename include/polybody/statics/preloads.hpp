@@ -1,10 +1,13 @@
 #pragma once
+/// \file
+/// Wrenches of compliant joints in one state, such as the initial state.
+
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-/// Wrench in a compliant joint in the initial state.
+/// Wrench in a compliant joint in one state.
 struct Preload {
   std::string joint;      ///< name of the joint in the model
   Wrench<double> wrench;  ///< on the second body about its joint point, world axes [N], [N m]

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Stability of an equilibrium.
+/// Stability of an equilibrium: number of negative eigenvalues of its stiffness.
 
 #include <algorithm>
 #include <cmath>

@@ -13,12 +13,12 @@ namespace polybody {
 
 /// Matrix of the equations of statics in a state: scaling, assembly, factorisation and solution.
 ///
-/// The linear equations of statics are [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. After the
-/// coordinates x contains the first-order states, and after the forces f contains the rates of these states. The
-/// equations are scaled to A y = b,
+/// The linear equations of statics are [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q + ∂(Gᵀλ)/∂q contains all second-order
+/// terms. x contains the increments of the coordinates, then those of the first-order states. f contains the forces,
+/// then the rates of these states. The equations are scaled to A y = b,
 ///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
-/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be lost in
-/// the round-off of pivots of 1e14 N/m.
+/// with a power of two u of the magnitude of K. Without the scaling, the entries of G, which are near one, would be
+/// lost in the round-off of pivots of 1e14 N/m.
 template <LinearSolver Solver>
 class StaticTangent {
  public:
@@ -110,8 +110,8 @@ class StaticTangent {
       b[i] = double(std::int64_t(h ^ (h >> 32))) * 0x1p-63;
     }
   }
-  /// Redundant constraint equations that the solver has omitted, as unknowns. Empty for solvers that do not report
-  /// them.
+  /// Redundant constraint equations that the solver has omitted, as indices of unknowns. Empty for solvers that do not
+  /// report them.
   std::span<Index const> dropped() const {
     if constexpr (requires { solver_.dropped(); })
       return solver_.dropped();

@@ -89,7 +89,7 @@ class StructureLoads {
   Motion const& motion(std::size_t k) const { return motions_[k]; }          ///< motion of sample k
   std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }  ///< loads of sample k
 
-  /// Nodal forces of sample k (N).
+  /// Nodal forces of sample k (N×1, for N nodal coordinates).
   template <class = void>
   VecX nodal(std::size_t k) const {
     Motion const& at = motions_[k];

@@ -49,7 +49,7 @@ Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
 struct LoadLines {
   StructureLoads const* of;
   MatX loads;                    ///< (n×samples)
-  std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; empty if not used
+  std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; empty without `follows_deformation`
 
   template <class = void>  // compiled where it is used
   std::pair<Index, double> between(double t) const {

@@ -25,7 +25,7 @@ namespace polybody::detail {
 class PointProcess {
  public:
   /// Starts the process. The process sends the text that `answer` returns.
-  /// \throws Error if the system has no more processes.
+  /// \throws Error if the operating system cannot create another process.
   template <class F>
   explicit PointProcess(F const& answer) {
     static std::mutex one_at_a_time;  // otherwise a process that another thread starts inherits the pipe
@@ -111,7 +111,7 @@ class PointProcess {
 /// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does not
 /// end within `limit` [s].
 /// \throws StudyUsageError if `found` throws it; Error with the message of another exception of `found`, or if the
-/// system has no more processes.
+/// operating system cannot create another process.
 template <class F>
 Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
   pid_t const parent = ::getpid();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Studies over the ranks of MPI: the same program as with threads is started by `mpirun -np 4 program`. Rank 0
+/// Studies distributed over the ranks of MPI: `mpirun -np 4 program` starts the same program as for threads. Rank 0
 /// distributes the points to free ranks, computes points itself, and writes the record. The record has the same format
 /// as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all ranks, and
 /// the next run continues the record.
@@ -105,8 +105,8 @@ void require_same_study(Study const& study) {
 }  // namespace detail
 
 /// Runs a study like `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
-/// exception. Rank 0, and a rank on which f threw, get the original exception. The other ranks get an IoError with its
-/// message. A single rank uses threads.
+/// exception. A rank on which f threw gets the original exception. If this is not rank 0, then rank 0 gets an Error
+/// that names the rank. The other ranks get an IoError with the message of rank 0. A single rank uses threads.
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
   if (ranks.size() == 1) return study.run(f, options);

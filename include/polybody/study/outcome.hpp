@@ -43,7 +43,7 @@ struct Outcome {
 struct StudyResults {
   Points points;                                   ///< points of the study
   std::vector<StudyOutput> outputs;                ///< outputs of the study
-  std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes in the order of the points; empty if unfinished
+  std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes in the order of the points; none if unfinished
   std::size_t resumed = 0;                         ///< number of points that earlier runs have finished
   bool torn = false;                               ///< true if an earlier run was killed while it wrote a line
 

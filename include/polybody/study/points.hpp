@@ -23,7 +23,7 @@ class StudyUsageError : public InvalidInput {
 
 /// Parameter of a study: a column of its table.
 struct Column {
-  std::string name{};                  ///< name by which a point returns the value
+  std::string name{};                  ///< name of the parameter: point["step"] returns its value
   std::string unit{};                  ///< unit of the values; empty: none
   std::vector<std::string> choices{};  ///< meaning of the values 0, 1, …; empty: the values are numbers in `unit`
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Queue of the unfinished points of a study, shared by all threads.
+/// Record file of a study, and the queue of its unfinished points, which all threads share.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -26,7 +26,7 @@ namespace polybody::detail {
 /// Identity of the study to which a record must belong.
 struct RecordKind {
   std::string file;               ///< name of the file, for messages
-  std::vector<std::string> head;  ///< `record_head`
+  std::vector<std::string> head;  ///< lines of the head, from `record_head`
   std::size_t points = 0, outputs = 0;
 };
 
@@ -103,10 +103,10 @@ RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
   return content;
 }
 
-/// Record of one study, locked by this process while it is open. Each line is passed to the system at once, so a
-/// killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation is
-/// at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has not
-/// stored. Not thread-safe.
+/// Record of one study, locked by this process while it is open. Each line is written to the operating system at once,
+/// so a killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation
+/// is at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has
+/// not stored. Not thread-safe.
 class StudyRecord {
  public:
   /// Opens or creates the record, and removes the incomplete line of a killed run.
@@ -133,7 +133,7 @@ class StudyRecord {
   bool torn() const { return content_.torn; }
 
   /// Appends the outcome of a point.
-  /// \throws IoError if the system refuses the bytes, for example if the disk is full. The record then ends with the
+  /// \throws IoError if the line cannot be written, for example if the disk is full. The record then ends with the
   /// previous line.
   void append(std::size_t point, Outcome const& outcome) {
     RecordChain const before = content_.chain;

@@ -70,7 +70,7 @@ std::string record_text(std::size_t point, Outcome const& outcome) {
   return text;
 }
 
-/// Outcome of a line written by `record_text`. Returns nothing if the line is neither form, if the point is not below
+/// Outcome of a line written by `record_text`. Returns nothing if the line has neither form, if the point is not below
 /// `points`, or if the count of numbers is not `outputs`.
 template <class = void>
 std::optional<std::pair<std::size_t, Outcome>> outcome_in(std::string_view text, std::size_t points,

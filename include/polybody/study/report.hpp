@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tables, curves and statistics of the results of a study.
+/// Tables, selections and curves of the results of a study.
 
 #include <map>
 

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Statistics of one output over the points that have it.
+/// Statistics of one output over the points with a value of this output.
 struct Statistics {
   std::size_t count = 0;         ///< number n of points
   double mean = 0.0;             ///< mean, in the unit of the output

@@ -23,7 +23,7 @@ auto mutable_view(V& x) {
   return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
 }
 
-/// The ε part of a matrix of Dual<1>.
+/// Derivatives (coefficients of ε) in a matrix of dual numbers.
 inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
   return m.unaryExpr([](Dual<1> const& x) { return x.d[0]; });
 }
@@ -46,7 +46,7 @@ inline double smallest_pivot(MatX m) {
 template <class Case>
 concept MadeFromBar = requires { Case::body(Case::bar()); };
 
-/// Body of a case and its reference values. A specialisation derives them from the Bar of a case.
+/// Body of a case and its reference values. For a case with a Bar, a specialisation computes the reference values.
 template <class Case>
 struct BodyOf {
   static auto body() { return Case::body(); }  ///< body of the case, with damping
@@ -60,7 +60,7 @@ struct BodyOf {
   static double mass() { return Case::mass(); }  ///< mass given by the case [kg]
   /// (3) Centre of mass in the reference configuration, world axes [m].
   static Vec3 centre() { return Case::centre(); }
-  /// Largest elastic constant, as the unit of force errors. It is 1 if the case does not define `stiffness`.
+  /// Scale of the tolerances for forces: largest elastic constant of the case, or 1 if it does not define `stiffness`.
   static double stiffness() {
     if constexpr (requires { Case::stiffness; })
       return Case::stiffness;
@@ -85,7 +85,7 @@ struct BodyOf<Case> {
     Bar const bar = Case::bar();
     return bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
   }
-  /// EA + EI of the bar, as the unit of force errors.
+  /// Scale of the tolerances for forces: EA + EI of the bar.
   static double stiffness() {
     BarConstants const c = constants(Case::bar());
     return c.EA + c.EI;

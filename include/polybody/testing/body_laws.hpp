@@ -41,14 +41,14 @@ namespace polybody::laws {
 /// Derivatives of energies are computed by differences.
 template <class Case>
 struct BodyLaws {
-  using Made = BodyOf<Case>;                                ///< creation of the body by the case
+  using Made = BodyOf<Case>;                                ///< functions that create the body of the case
   using B = decltype(Made::body());                         ///< type of the body
   using D = Dual<1>;                                        ///< dual number with the derivative along one direction
   static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
   static constexpr bool rolls = B::observes == MarkerKind::frame;     ///< true if markers have three axes
   static constexpr bool directed = B::observes != MarkerKind::point;  ///< true if markers have an axis
-  /// True if the coordinates can move every point of the body in the same rigid motion, without strain. A body without
-  /// the member `objective` is taken as objective.
+  /// True if the coordinates can represent every rigid motion of the body without strain. A body without the member
+  /// `objective` is taken as objective.
   static constexpr bool objective = [] {
     if constexpr (requires { B::objective; })
       return B::objective;
@@ -129,7 +129,7 @@ struct BodyLaws {
     body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
-  /// Rate δ˙ (nv) of q ⊞ δ at the generalised velocities v.
+  /// Rate δ˙ (nv) with which q ⊞ δ moves at the generalised velocities v.
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
@@ -248,7 +248,7 @@ struct BodyLaws {
   /// Marker kinematics, with the Jacobian over all columns of the body.
   template <class T>
   struct Seen {
-    Sequence<T> memory;                  ///< memory of `marker.jacobian`; its address is constant under moves
+    Sequence<T> memory;                  ///< memory of `marker.jacobian`; a move keeps its address
     MarkerKinematics<T> marker;          ///< result of `evaluate_marker`
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< Jacobian over all columns of the body
     /// Twist of the marker [ṙ; ω] in world axes [m/s], [rad/s].
@@ -319,7 +319,7 @@ struct BodyLaws {
   /// Φ(q₀) = 0, G = ∂Φ/∂q, γ = d/dt (G v) at v˙ = 0 and `own_stiffness` = ∂(Gᵀλ)/∂q for a body with own constraint
   /// equations.
   void own_rows_hold_at_the_reference_and_their_maps_are_derivatives();
-  /// The point at(s, y) of the undeformed body is the same material point of the bar, and has the axes of the bar.
+  /// The point at(s, y) of the undeformed body has the position and the axes of the point (s, y) of the bar.
   void reference_stands_where_the_bar_is_placed();
   /// at(s) throws for s outside of [0, L], with a tolerance for round-off.
   void points_outside_the_bar_are_refused();

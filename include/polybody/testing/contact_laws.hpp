@@ -20,7 +20,7 @@ namespace polybody::laws {
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
 ///       static constexpr double radius;                                       // of the shape about marker a
-///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);   // position of a for this penetration
+///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);   // position of a at this penetration
 ///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b);  // ∂n/∂r_a [1/m]
 ///     };
 ///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
@@ -152,7 +152,7 @@ struct ContactLaws {
     for (int k = 0; k < 20; ++k) {
       Touching const near = overlapping(1e-12), far = overlapping(-1.0);
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
-      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // otherwise the test would be useless
+      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // a `may_touch` that is always true fails here
     }
   }  ///< `may_touch` and `reach` include all contacts, and exclude shapes that are clearly apart
 
@@ -303,8 +303,8 @@ struct ContactLaws {
     });
   }  ///< `own_stiffness` is symmetric, and no eigenvalue is negative
 
-  /// In the derivative of the force on a with respect to its displacement, `own_stiffness` omits one term, N ∂n/∂r.
-  /// This term reduces the stiffness of curved shapes.
+  /// In the derivative of the force on body a with respect to the displacement of body a, `own_stiffness` omits one
+  /// term, N ∂n/∂r_a. This term reduces the stiffness of curved shapes.
   void own_stiffness_leaves_out_only_how_the_normal_turns() {
     with_each_contact([&](auto const& contact) {
       Touching const f = at_rest(0.1);
@@ -345,7 +345,7 @@ struct ContactLaws {
 
   /// `own_stiffness` contains the secant of the friction force. During sliding the secant exceeds the derivative along
   /// the slip velocity u, and equals the derivative across u. The difference from the exact matrix is Jᵀ (μN/s)(u
-  /// uᵀ/s²) J with s² = u² + v_s².
+  /// uᵀ/s²) J with s² = u² + v_s², where J is the Jacobian of u.
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);

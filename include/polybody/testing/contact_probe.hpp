@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact points of two frames in a contact geometry.
+/// Functions that return the contact points of a contact geometry for two frames.
 ///
 /// Requires GoogleTest.
 

@@ -23,7 +23,7 @@ auto slope_at_zero(F&& f, double h = 1e-3) {
       return std::abs(double(x));
   };
   constexpr int steps = 5;
-  Value row[steps], last[steps];  // extrapolations that end at the present and at the previous step, by their order
+  Value row[steps], last[steps];  // extrapolations of order 0, 1, … with the current step, and without it
   Value best = Value((f(h) - f(-h)) / (2.0 * h));
   double least = std::numeric_limits<double>::infinity();
   last[0] = best;

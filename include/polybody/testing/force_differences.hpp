@@ -77,7 +77,8 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
   return gradient;
 }
 
-/// Largest difference between `wrench_gradient` and `gradient_by_differences`, divided by 1 + the largest entry.
+/// Largest difference between `wrench_gradient` and `gradient_by_differences`, divided by 1 + the largest entry of the
+/// latter.
 template <ForceElement F>
 double gradient_mismatch(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
                          double cd) {

@@ -66,8 +66,8 @@ struct ForceLaws {
   static MarkerKind needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
   /// `wrench_gradient` equals ck ∂w/∂pose + cd ∂w/∂twist of the wrenches w, computed by differences. For elements with
-  /// states, `gradient_with_states` is compared. The law detects derivatives that are lost by a branch or a conversion
-  /// in a template for any scalar type.
+  /// states, `gradient_with_states` is compared. The test detects derivatives that the element loses by a branch or by
+  /// a conversion to double.
   void gradient_is_the_derivative_of_the_wrenches() {
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
       if constexpr (HasStates<F>) {

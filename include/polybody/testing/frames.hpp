@@ -11,8 +11,7 @@ namespace polybody::laws {
 /// Random numbers in [−size, size] with a fixed seed.
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607)
-      : generator_(seed) {}  ///< a generator; an equal `seed` generates equal numbers
+  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< generator; equal seeds generate equal numbers
 
   /// Next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
@@ -25,14 +24,14 @@ class Numbers {
   VecX vector(Index n, double size = 1.0) {
     return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
   }
-  /// Random motion [δr; δφ] or twist [ṙ; ω] in [−size, size]. If `planar`, only the components along x and y and about
-  /// z are nonzero.
+  /// Random motion [δr; δφ] or twist [ṙ; ω] with entries in [−size, size]. If `planar`, only the components along x and
+  /// y and about z are nonzero.
   Vec6 motion(bool planar, double size = 1.0) {
     Vec6 x = vec<6>(size);
     if (planar) x[2] = x[3] = x[4] = 0.0;
     return x;
   }
-  /// Frame with random position, orientation and twist. If `planar`, it remains in the plane z = 0.
+  /// Frame with random position, orientation and twist. If `planar`, its motion remains in the plane z = 0.
   Frame<double> frame(bool planar = false) {
     Vec6 const place = motion(planar, 2.0), twist = motion(planar);
     return {.r = place.head<3>(), .A = exp_so3<double>(place.tail<3>()), .v = twist.head<3>(), .w = twist.tail<3>()};

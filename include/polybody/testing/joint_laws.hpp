@@ -14,7 +14,7 @@
 
 namespace polybody::laws {
 
-// Constraint function of a joint geometry of any type between two frames, and the derivatives that the laws compare.
+// Joint geometry with its type erased: constraint function between two frames, and derivatives that the laws compare.
 
 /// Pose of frame b relative to frame a that satisfies the constraint equations, and the free directions of b in this
 /// pose.
@@ -116,10 +116,10 @@ inline FramePair FramePair::moved_by(VecX const& motion) const {
   return {moved<double>(a, motion.head<6>()), moved<double>(b, motion.tail<6>())};
 }
 
-/// Laws of a joint geometry of any type between frames a and b, with the twists V = [ṙ; ω] of both frames, the
-/// constraint function g, its Jacobian G = [Ga Gb] and the multipliers λ.
+/// Laws of a joint geometry with its type erased, between frames a and b, with the twists V = [ṙ; ω] of both frames,
+/// the constraint function g, its Jacobian G = [Ga Gb] and the multipliers λ.
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;                    ///< largest relative error, except for differences
+  static constexpr double tolerance = 1e-12;                    ///< largest relative error of exact derivatives
   AnyGeometry const geometry;                                   ///< geometry under test
   bool const planar = geometry.planar;                          ///< true if all frames stay in the plane z = 0
   Index const m = geometry.rows;                                ///< number of constraint equations
@@ -160,9 +160,9 @@ struct JointLawsOf {
   /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), with ġ along the motion.
   void wrenches_have_the_power_of_the_multipliers();
   /// f_a + f_b = 0 for all frames. If the constraint equations are satisfied, the moments about every point are
-  /// balanced. Otherwise the constraint equations in world axes, with the force f, have the moment d × f, d = r_b −
-  /// r_a. This moment is zero for a force along d, such as that of a spring. If a geometry declares opposite ends, Gb =
-  /// −Ga is bitwise exact.
+  /// balanced. Otherwise the constraint equations in world axes, with the force f, leave the moment d × f, where d =
+  /// r_b − r_a. This moment is zero for a force along d, such as that of a spring. If a geometry declares opposite
+  /// ends, Gb = −Ga is bitwise exact.
   void wrenches_are_equal_and_opposite();
   /// A rotation and displacement of both frames and their twists rotates the constraint equations in world axes and
   /// does not change the other equations.
@@ -186,7 +186,7 @@ struct JointLawsOf {
 ///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
 ///
 /// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. Tolerances are
-/// relative and include the rounding of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
+/// relative and include the round-off of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
 /// the geometry through `AnyGeometry`, so that a source file compiles them once for all of its geometries.
 template <class Case>
 struct JointLaws : JointLawsOf {

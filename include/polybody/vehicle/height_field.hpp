@@ -111,7 +111,7 @@ class HeightField {
   }
 
   Axis x_, y_;
-  /// (2nx + 4 × 2ny + 4) values and slopes: rows alternate between h and ∂h/∂x, columns between h and ∂h/∂y.
+  /// ((2nx + 4) × (2ny + 4)) values and slopes: rows alternate between h and ∂h/∂x, columns between h and ∂h/∂y.
   std::shared_ptr<MatX const> nodes_;
   double highest_ = 0.0;
 };

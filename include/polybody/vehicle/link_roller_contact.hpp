@@ -28,11 +28,11 @@ struct LinkRollerContact {
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
 
   Required<double> pitch;            ///< p, pitch of the link [m]
-  Required<double> half_thickness;   ///< h, from the line between the pins to the face [m]
+  Required<double> half_thickness;   ///< h, distance from the line between the pins to the face [m]
   Required<double> half_width;       ///< half width of the face [m]
   Required<double> radius;           ///< R, radius of the rims [m]
   double handover = 0.03;            ///< ε, half length of the transition between two links [m]
-  double chamfer = 0.005;            ///< c, chamfer of the edges, above the penetration of the rims [m]
+  double chamfer = 0.005;            ///< c, chamfer of the edges, greater than the penetration of the rims [m]
   std::vector<double> rims = {0.0};  ///< positions of the rims' middle planes along the axle [m]
 
   void check(std::string const& name) const {
@@ -95,9 +95,9 @@ struct LinkRollerContact {
   /// Upper bound of the distance between the centres of the roller and of a link in contact [m]. \param far upper bound
   /// of the distance of a rim from the roller's centre [m]
   double farthest(double far) const { return radius + half_thickness + half_width + pitch + far; }
-  /// Checks that the rims can reach the face. At least one point of the axle within ±`far` of its middle must be
-  /// lower above the face than the radius of the rims. `arm` is the vector from the link to the middle of the `axle`.
-  /// The z axis of a cable is along x × axle (`link_axes`).
+  /// Checks that the rims can reach the face. For at least one point of the axle within ±`far` of its middle, the
+  /// height above the face must be less than the radius of the rims. `arm` is the vector from the link to the middle of
+  /// the `axle`. The z axis of a cable is along x × axle (`link_axes`).
   bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
     double const height = (radius + half_thickness) * (1.0 + 1e-9);
     if constexpr (observed == MarkerKind::frame) {
@@ -113,7 +113,7 @@ struct LinkRollerContact {
   template <StateScalar T>
   struct OverEdge {
     T across;          ///< position along the edge, from the middle of the link [m]
-    double side;       ///< sign of x, a factor: 1 at the front edge, −1 at the rear edge
+    double side;       ///< factor 1 at the front edge (x > 0), −1 at the rear edge
     T beyond, height;  ///< distance outwards from the edge, and height above the face [m]
   };
   template <StateScalar T, class Visit>
@@ -133,8 +133,8 @@ struct LinkRollerContact {
 
 /// Lateral guide of a track. A horn on the inner face of a link runs between the rims of a wheel and touches their
 /// inner faces. The markers are those of `LinkRollerContact`. The force is parallel to the axle. The penetration is the
-/// distance of the horn beyond the play. It is limited to the distance of the tip within the rims. So the force also
-/// grows from zero if a horn comes down on a rim. This limit represents edges with a chamfer of 45°.
+/// distance of the horn beyond the play. It is limited to the radial distance of the tip inside the circle of the rims.
+/// So the force also grows from zero if a horn comes down on a rim. This limit represents edges with a chamfer of 45°.
 template <MarkerKind observed = MarkerKind::frame>
 struct GuideHornContact {
   static constexpr MarkerKind needs = observed;

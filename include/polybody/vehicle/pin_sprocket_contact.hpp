@@ -28,7 +28,8 @@ struct SprocketProfile {
   double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }
   /// Distance from the axle at which a pin just touches a tip; there is no contact at a greater distance [m].
   double outer_radius() const { return tip_radius + pin_radius; }
-  /// (2) Intersection of flank and tip circle, radial and tangential, relative to the middle of the valley [m].
+  /// (2) Intersection of flank and tip circle: distances from the axle along the middle of the valley and across it
+  /// [m].
   Vec2 corner() const {
     Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)),
         up(std::sin(flank), std::cos(flank));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Terrains under vehicles: heights z = h(x, y) above the plane z = 0 of the world, with z up, and their slopes.
+/// Terrains under vehicles: heights z = h(x, y) in the axes of the ground, with z up, and their slopes.
 
 #include <algorithm>
 #include <array>

@@ -79,7 +79,7 @@ struct TrackPath {
   double travel;                      ///< travel of the tensioner's circle from the listed position [m]
   std::vector<Vec2> pins = {};        ///< links × (2) positions of the pins [m]
   std::vector<TrackLink> links = {};  ///< frames of the links
-  int seated = 0;                     ///< pins 0 … seated − 1 are seated on the sprocket
+  int seated = 0;                     ///< number of pins on the sprocket, pins 0 … seated − 1
   int first_valley = 0;               ///< number of the valley (see `TrackLayout::seat`) of pin 0
   /// (2) Force on the tensioner's circle due to a unit tension of the track. If the tensioner's force along its
   /// direction d is F, the tension is F / (−pull · d).

@@ -58,7 +58,7 @@ struct TrackTensioner {
 struct TrackLayout {
   Required<int> links;              ///< number of links in the closed loop
   Required<double> pitch;           ///< p, distance between two pins [m]
-  Required<double> half_thickness;  ///< h, from the line through a link's pins to either face [m]
+  Required<double> half_thickness;  ///< h, distance from the line through a link's pins to either face [m]
   TrackSprocket sprocket;           ///< driven wheel, which pulls the track
   /// Circles in the order in which the track meets them after the sprocket. A wheel that the track may touch twice is
   /// listed twice, for example a wheel that also carries the upper run. A circle that the track does not reach has no
@@ -175,7 +175,7 @@ struct TrackTrace {
   double length = 0.0;     ///< length of the whole loop in links; a whole number only if the loop closes
 };
 
-/// Number of the seat that points from the sprocket's centre away from the mean centre of the circles.
+/// Number of the seat whose direction from the sprocket's centre is away from the mean centre of the circles.
 inline int track_start(TrackLayout const& layout) {
   Vec2 away = layout.sprocket.centre;
   for (TrackCircle const& c : layout.circles) away -= c.centre / double(layout.circles.size());
@@ -183,8 +183,8 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// First seat that the track meets, among `start` and the seats in front of it. All other seats are
-/// to the right of the line from `pin` to this seat, whose direction is written to `sight`.
+/// First seat that the track meets, among `start` and the seats in front of it. All other seats are to the right of the
+/// line from `pin` to this seat. The direction of the line is written to `sight`.
 inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
                             TrackSight& sight) {
   int first = start;
@@ -201,9 +201,9 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`. It is −1
-/// for the next seat while the chain is on the sprocket. It is the number of circles for the seat at the end of the
-/// chain. Sets `heading` to the link's direction.
+/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`, −1 if the
+/// target is the next seat of the sprocket, or the number of circles if it is the seat at the end of the chain. Sets
+/// `heading` to the link's direction.
 ///
 /// Circles inside the track bound a link's turn to the right, and circles outside bound it to the left. They are
 /// visited in their order until a bound crosses the bound of the other side. Then the link runs to the circle of this

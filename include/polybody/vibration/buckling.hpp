@@ -128,7 +128,7 @@ class PrebucklingPath {
 /// stiffness of the motions that the constraint equations permit is linear in the load factor p of all loads and of
 /// gravity,
 ///   (K + (p − p₀) K_g) z = 0,   K_g = dK/dp along the tangent of the path of equilibria at x.
-/// K_g is computed by central differences of the tangent in a step of 1 % of the first buckling load. It contains the
+/// K_g is computed by central differences of the tangent with a step of 1 % of the first buckling load. It contains the
 /// stress and the displacement before buckling to first order. All loads and gravity have the same factor, so no load
 /// can remain constant. Only factors p > p₀ are computed. For loads in the opposite direction, reverse the forces of
 /// the model. The result is empty if the structure does not buckle.

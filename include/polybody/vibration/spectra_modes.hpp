@@ -12,9 +12,9 @@ namespace polybody {
 
 /// Eigenvalue solver that can replace DenseModes in fixed_interface_modes, free_interface_modes and craig_bampton. It
 /// uses the implicitly restarted Lanczos iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen
-/// 1992]. The iteration may miss modes of a repeated frequency. The computed modes below the last one are therefore
-/// counted and compared with the number of negative pivots of K − σM (Sylvester's law), σ just below the last ω². If
-/// modes are missing, the iteration is repeated with twice as many vectors, in at most six attempts.
+/// 1992]. The iteration may miss modes of a repeated frequency. With σ just below the last ω², the number of computed
+/// modes with ω² < σ is therefore compared with the number of negative pivots of K − σM (Sylvester's law). If modes are
+/// missing, the iteration is repeated with twice as many vectors, in at most six attempts.
 struct SpectraModes {
   Index restarts = 1000;     ///< largest number of restarts in one attempt
   double tolerance = 1e-12;  ///< relative error of ω²

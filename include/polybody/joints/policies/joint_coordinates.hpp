@@ -1,17 +1,20 @@
 #pragma once
+/// \file
+/// Joint coordinates: policy for which the relative motion in a joint is the unknown.
+
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/policies/policy.hpp>
 
 namespace polybody {
 
-/// Solution methods for the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u. All give the same motion.
+/// Solution methods for the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u. All methods give the same motion.
 namespace joint_coordinates {
 /// Sparse augmented system [M, Gᵀ; G, 0] of all bodies. Its solution is projected onto the joint coordinates: T u̇ = v̇
 /// − Ṫu [thesis Eq. 3.5]. With a sparse solver the cost is linear in the number of bodies, for trees and loops.
 struct Augmented {};
 /// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
-/// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so that they
-/// should be few.
+/// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so the method
+/// is efficient only if they are few.
 struct ArticulatedBody {};
 }  // namespace joint_coordinates
 

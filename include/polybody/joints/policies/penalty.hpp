@@ -8,7 +8,7 @@ namespace polybody {
 /// cosines.
 struct Penalty {
   static constexpr char const* name = "Penalty";
-  static constexpr bool linear = true;  ///< linear in g and ġ
+  static constexpr bool linear = true;  ///< true: λ is linear in g and ġ
 
   Required<double> stiffness;  ///< k [N/m], [N m/rad]
   Required<double> damping;    ///< c [N s/m], [N m s/rad]
@@ -47,7 +47,7 @@ struct Penalty {
 template <int n>
 struct PenaltyPerEquation {
   static constexpr char const* name = "PenaltyPerEquation";
-  static constexpr bool linear = true;  ///< linear in g and ġ
+  static constexpr bool linear = true;  ///< true: λ is linear in g and ġ
 
   Required<Vec<double, n>> stiffness;  ///< (n) k, units as for `Penalty`
   Required<Vec<double, n>> damping;    ///< (n) c, units as for `Penalty`

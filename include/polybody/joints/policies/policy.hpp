@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Kinds of joint policies. The assembly treats all policies of one kind by the same code.
+/// Kinds of joint policies. The assembly treats all policies of one kind with the same code.
 
 #include <polybody/joints/constraint_terms.hpp>
 
@@ -28,7 +28,7 @@ concept CompliantLaw = requires(P const p, Vec<double, m> const g, std::string c
   { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
 
-/// Policy with a force instead of constraint equations. Some policies accept any number of equations, others only one
+/// Policy with a force instead of constraint equations. Some policies accept any number of equations, others one fixed
 /// number.
 template <class P>
 concept CompliantPolicy = CompliantLaw<P, 1> || CompliantLaw<P, 2> || CompliantLaw<P, 3> || CompliantLaw<P, 4> ||
