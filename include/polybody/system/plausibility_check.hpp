@@ -45,8 +45,8 @@ struct Unexplained {
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
 /// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
 /// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
-/// step would remove their energy. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. Σ v² has
-/// mixed units, so it can miss a jump of slow, heavy bodies beside fast ones; the other balances find it.
+/// step would remove their energy. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The unit
+/// of Σ v² is mixed, so a jump of slow, heavy bodies can be missed; the other balances find it.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
