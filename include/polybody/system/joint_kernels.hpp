@@ -73,7 +73,7 @@ constexpr bool has_potential() {
 }
 
 /// λ(g, 0) of those laws of a bushing that have no potential; zero for other laws and policies. \param rest λ(g, 0) of
-/// all
+/// all laws
 template <class P, int m>
 Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   if constexpr (requires { std::get<0>(policy.laws); })

@@ -28,7 +28,7 @@ struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
   double worst = 0.0;   ///< largest such error of one step [J]
-  double scale = 0.0;   ///< largest S of `PlausibilityCheck` so far, with 10⁻³ V₀⁺ and the round-off [J]
+  double scale = 0.0;   ///< largest T₀ + max(0, V₀ − V) + 2 W so far, plus 10⁻³ V₀⁺ and round-off [J]
   bool known = false;   ///< true if an energy balance was evaluated
   long halved = 0;      ///< number of steps that were halved for their energy gain
 };
@@ -44,11 +44,12 @@ struct Unexplained {
 /// balance, and their energy is not checked.
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
-/// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
-/// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
-/// step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by 3 % of the largest
-/// T or more, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of slow, heavy
-/// bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of the run.
+/// value. It halves a step that gains more than ½ limit · S, or that gains a tenth of this and ends with E − E₀ minus
+/// the signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation. The new start of a
+/// halved step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by at least 3
+/// % of the largest T, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of
+/// slow, heavy bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of
+/// the run.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -163,7 +164,7 @@ class PlausibilityCheck {
     double gained = 0.0, put_in = 0.0, net = 0.0;      ///< E − E₀, W, signed work [J]
     double kinetic = 0.0, held = 0.0, released = 0.0;  ///< T₀, V₀⁺, max(0, V₀ − V) [J]
     double rounding = 0.0;                             ///< estimated round-off of the energies [J]
-    bool known = false;                                ///< true if the model has such a balance
+    bool known = false;                                ///< true if the model has an energy balance
     /// S [J].
     double scale() const { return kinetic + std::max(held, released) + 2.0 * put_in; }
   };
