@@ -60,7 +60,7 @@ class EliminationOrder {
     int waits = 0;              ///< number of nodes that must be eliminated before this one
     int place = -1;             ///< position in the order, once eliminated
     bool late = false;
-    bool ready = false;  ///< waits for no node and is not eliminated
+    bool ready = false;  ///< true if it waits for no node and is not eliminated
   };
 
   Candidate& at(int n) { return left_[std::size_t(n)]; }
