@@ -145,7 +145,7 @@ class BlockFactor {
   double flops() const;
   /// Number of entries of the factor, without padding.
   Index fill() const;
-  Index nodes() const { return Index(layout_.nodes.size()); }  ///< number of eliminated blocks
+  Index nodes() const { return Index(layout_.nodes.size()); }  ///< number of nodes, eliminated one after another
   /// Unknowns in the order of their elimination.
   Sequence<int> order() const {
     Sequence<int> all;

@@ -114,7 +114,7 @@ struct NewtonProgress {
     return saved * std::max(reused.served, 1) > options.factorisation_cost;
   }
 
-  /// True if the corrections have stopped shrinking, so that they may consist of round-off.
+  /// True if the corrections shrink too slowly or grow. They may then consist of round-off.
   bool stagnates(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);

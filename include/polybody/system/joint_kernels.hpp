@@ -39,7 +39,7 @@ struct JointData {
   Sequence<Vec<T, J::rows>> answers;
 };
 
-/// Appends the breakpoints of a function of time, at which steps end.
+/// Appends the breakpoints of a function of time to `all`. Steps end at breakpoints.
 template <class Law>
 void add_breakpoints(Law const& law, Sequence<double>& all) {
   if constexpr (HasBreakpoints<Law>)

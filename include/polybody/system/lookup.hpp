@@ -110,8 +110,8 @@ template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, BodyHandle<B> const& handle) {
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, handle))], x);
 }
-/// Body of a marker with its part of the state x, found in the layout of its model. \throws InvalidInput for a marker
-/// of another model, which names `question`.
+/// Body of a marker with its part of the state x, found in the layout of its model. \throws InvalidInput naming
+/// `question` for a marker of another model.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B> const& marker,
                              std::string const& question) {

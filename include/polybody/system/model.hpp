@@ -167,8 +167,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return x;
   }
 
-  /// First-order states of a force element in x. \throws InvalidInput for a default-constructed handle, one of another
-  /// model, or a state that is too short.
+  /// First-order states of a force element in x. \throws InvalidInput for a default-constructed handle, a handle of
+  /// another model, or a state that is too short.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {

@@ -45,11 +45,10 @@ struct Unexplained {
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
 /// value. It halves a step that gains more than ½ limit · S, or that gains a tenth of this and ends with E − E₀ minus
-/// the signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation. The new start of a
-/// halved step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by at least 3
-/// % of the largest T, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of
-/// slow, heavy bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of
-/// the run.
+/// signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation, whose energy a new start
+/// would remove. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by at least 3 % of the largest T,
+/// because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of slow, heavy bodies
+/// beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of the run.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
