@@ -37,7 +37,7 @@ struct PlacedWrench {
 /// Kinematics that a marker provides: a point, a point and its first axis, or a full frame.
 enum class MarkerKind { point, axis, frame };
 
-/// Dimension of a body: plane or space. A joint connects bodies of one dimension; the ground belongs to both.
+/// Dimension of a body: plane or space. A joint connects bodies of equal dimension; the ground has both dimensions.
 enum class World { plane, space, both };
 
 /// True if bodies of the dimensions a and b can be connected: both plane, both space, or one of them the ground.

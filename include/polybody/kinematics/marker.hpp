@@ -128,7 +128,7 @@ template <class B>
 struct BodyHandle {
   std::uint64_t model = 0;  ///< serial number of the model that created the handle
   Index index = 0;          ///< number of the body among the bodies of its type
-  std::string name = {};    ///< name given by the user
+  std::string name = {};    ///< name of the body, given or generated
   /// Array of the bodies of this type, shared with the model and not copied; null for the ground.
   std::shared_ptr<Sequence<detail::BodyTableEntry<B>> const> bodies = {};
 
@@ -170,7 +170,7 @@ struct BodyHandle {
   {
     return named([](B const& on) { return on.centre(); });
   }
-  /// Reports numbers in braces at compile time if the function `at` of the body accepts no such point. For an invalid x
+  /// Compile-time message for numbers in braces that are not a point of the body's function `at`. For an invalid x
   /// without braces, `requires { handle.at(x); }` remains false.
   template <class Body = B>
     requires(

@@ -118,7 +118,7 @@ auto values_of(Eigen::MatrixBase<Derived> const& m) {
   return m.unaryExpr([](typename Derived::Scalar const& x) { return value_of(x); }).eval();
 }
 
-/// Scalar type of a state: double or a dual number.
+/// Scalar type of a state: double, dual number, secant or tape variable (`ReverseVar`).
 template <class T>
 concept StateScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;

@@ -222,14 +222,14 @@ class InconsistentInitialConditions : public Error {
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// Newton's method did not converge. The state is that at the start of the step.
+/// Newton's method did not converge. The state of the run is that at the start of the step.
 class NewtonConvergenceFailure : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// The step converged, but constraint equations are violated or the energy changed without work. The state is that at
-/// the start of the step.
+/// The step converged, but constraint equations are violated or the energy changed without work. The state of the run
+/// is that at the start of the step.
 class Diverged : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Sorted map from indices to a few values, with short compile times.
+/// Sorted map with few entries, from indices to values, with short compile times.
 
 #include <algorithm>
 #include <cmath>

@@ -128,7 +128,7 @@ class SimdVector {
   Lanes x_;
 };
 
-/// Scalar type of an element's kernel: double, dual number or SIMD vector.
+/// Scalar type of an element's kernel: double, dual number, tape variable or SIMD vector.
 template <class T>
 concept KernelScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;

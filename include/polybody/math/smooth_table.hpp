@@ -9,9 +9,9 @@
 
 namespace polybody {
 
-/// Cubic spline through points (t, value) with continuous value, rate and acceleration  [de Boor 1978, ch. IV]. The
-/// first and the last rate may be prescribed; an end without a prescribed rate has zero acceleration (natural
-/// spline). Beyond the ends the spline is continued linearly with the rate at the end.
+/// Cubic spline through points (t, value) with continuous value, rate and acceleration [de Boor 1978, ch. IV]. The
+/// first and the last rate may be prescribed; an end without a prescribed rate has zero acceleration (natural spline).
+/// Beyond the ends the spline is continued linearly with the rate at the end.
 class SmoothTable {
  public:
   /// Point of the table.

@@ -119,7 +119,7 @@ struct ArctanSeries {
   }
 };
 
-/// Rotation matrix exp(φ̃) = 1 + a φ̃ + b φ̃²  (Rodrigues), 3×3; φ in [rad].
+/// Rotation matrix exp(φ̃) = 1 + a φ̃ + b φ̃² (Rodrigues), 3×3; φ in [rad].
 template <class T>
 Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(squared_norm(phi));
@@ -139,7 +139,7 @@ Mat<T, 3, 3> left_jacobian(Vec<T, 3> const& phi) {
   return right_jacobian<T>({-phi[0], -phi[1], -phi[2]});
 }
 
-/// Inverse right Jacobian Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − (a/2b))/|φ|², for |φ| < 2π.
+/// Inverse right Jacobian Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − a/(2b))/|φ|², for |φ| < 2π.
 template <class T>
 Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   T const x = squared_norm(phi);

@@ -107,9 +107,9 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
 /// At a breakpoint the value is that of the following piece.
 ///
-/// With `rounding` w, a parabola replaces the ramp from w/2 before to w/2 after each breakpoint t₀. At the first one,
-/// value = slope s²/(2w), s = t − t₀ + w/2. Only the acceleration is then discontinuous. After both parabolas, value
-/// and integral equal those without rounding.
+/// With `rounding` w, a parabola replaces the ramp from w/2 before to w/2 after each breakpoint t₀. At the first
+/// breakpoint, value = (target/duration) s²/(2w), s = t − t₀ + w/2. Only the acceleration is then discontinuous. After
+/// both parabolas, value and integral equal those without rounding.
 struct Ramp {
   Required<double> target;    ///< final value [m] or [rad]
   Required<double> duration;  ///< duration of the ramp [s]

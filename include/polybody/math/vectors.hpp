@@ -37,7 +37,7 @@ template <class F>
   for (; i < n; ++i) f(EntryIndex{i});
 }
 
-/// Sum of the numbers that a loop of `for_each_simd_block` visits.
+/// Sum over the entries in a loop of `for_each_simd_block`.
 class SimdSum {
  public:
   void add(SimdVector<> const& x) { lanes_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`

@@ -137,7 +137,7 @@ class Workers {
   Sequence<std::exception_ptr> thrown_;  // one for each thread
   void (*call_)(void const*, int) = nullptr;
   void const* what_ = nullptr;
-  std::atomic<unsigned> round_{0}, running_{0};  // an overflow does no harm
+  std::atomic<unsigned> round_{0}, running_{0};  // an overflow of round_ is harmless
   Sequence<std::thread> others_;                 // last member: the threads use the others
 };
 

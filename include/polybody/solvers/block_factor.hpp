@@ -10,7 +10,7 @@
 /// Lt_kᵀ W_l for the blocks C of all later nodes k, l. In a symmetric matrix Lt = Δ⁻¹ W, and only blocks with l ≥ k are
 /// computed. Afterwards small nodes store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the original blocks. In a
 /// solution no node then waits for the triangular solve of another one. If D is nearly singular, sums of products with
-/// these multipliers would cancel, and the node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
+/// these multipliers would cancel. Such a node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
 
 #include <algorithm>
 #include <cmath>
@@ -81,9 +81,9 @@ class BlockFactor {
   /// order (`reordered`).
   BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data(), number_}; }
 
-  /// Returns −1, or the index of the unknown without a usable pivot. Redundant constraint equations of a loop are
-  /// dropped: see `dropped`. If `reordered` is true after a failure, the same matrix can be written and factorised
-  /// again.
+  /// Returns −1 on success, otherwise the index of the unknown without a usable pivot. Redundant constraint equations
+  /// of a loop are dropped: see `dropped`. If `reordered` is true after a failure, the same matrix can be written and
+  /// factorised again.
   Index factor() {
     reordered_ = false;
     dropped_count_ = 0;
@@ -113,10 +113,10 @@ class BlockFactor {
   /// Reverts all changes of the elimination order except the first `count`. The factor remains valid until the next
   /// `begin`.
   void limit_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
-  /// Unknowns of redundant constraint equations; these multipliers are zero.
+  /// Indices of the multipliers of dropped equations among the unknowns. These multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
-  /// Makes every later factorisation drop the multipliers `unknowns` and their equations, whatever the pivots, until
-  /// the next `analyse`. Equations that share a node with a singular body are not dropped.
+  /// Until the next `analyse`, every later factorisation drops the multipliers `unknowns` and their equations, whatever
+  /// the pivots. Equations that share a node with a singular body are not dropped.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     place_left_out();
@@ -126,7 +126,7 @@ class BlockFactor {
   [[gnu::cold]] bool is_doubtful(double share) const;
   /// Computes for each unknown d of `dropped` the vector n with 1 at d, 0 at all other dropped unknowns, and A n = 0 in
   /// all other rows. A is the last factorised matrix. If the equation of d is redundant, n is a null vector of A. The
-  /// cost of a vector is proportional to the size of the nodes with entries.
+  /// cost of a vector is proportional to the size of the nodes with nonzero entries.
   /// \param sizes sizes of the equations, so that A_ij is of the order of sizes_i sizes_j or less. n_i counts as zero
   /// if |n_i| sizes_i ≤ 1e-12 sizes_d, and an entry r_i of A n if |r_i| ≤ 1e-12 sizes_i sizes_d
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const;
@@ -145,7 +145,7 @@ class BlockFactor {
   double flops() const;
   /// Number of entries of the factor, without padding.
   Index fill() const;
-  Index nodes() const { return Index(layout_.nodes.size()); }  ///< number of eliminated blocks
+  Index nodes() const { return Index(layout_.nodes.size()); }  ///< number of nodes, eliminated one after another
   /// Unknowns in the order of their elimination.
   Sequence<int> order() const {
     Sequence<int> all;
@@ -326,7 +326,7 @@ class BlockFactor {
   Sequence<int> swaps_;
   mutable Sequence<char> direct_;  // size of each node, or 0 if it stores no elimination multipliers
   Sequence<Index> dropped_, left_out_;
-  Sequence<int> left_out_places_;  // places of left_out_ in nodes without pivoting, ascending
+  Sequence<int> left_out_places_;  // positions of the unknowns left_out_ in nodes without pivoting, ascending
   std::size_t dropped_count_ = 0;
   mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // `solve` changes only scaled_ and work_
   detail::AlignedDoubles scales_;

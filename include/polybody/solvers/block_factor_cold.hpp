@@ -116,7 +116,7 @@ class BlockFactor<symmetry>::NullSpace {
 
  private:
   int number(Node const& n) const { return int(of_.number(n)); }
-  /// Nodes that wait to be visited, the largest key first.
+  /// Adds a node to the heap of nodes to be visited, the largest key first.
   void enter(int key) {
     char& waits = waits_[std::size_t(std::abs(key))];
     if (waits) return;

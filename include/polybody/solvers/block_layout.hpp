@@ -60,7 +60,7 @@ class EliminationOrder {
     int waits = 0;              ///< number of nodes that must be eliminated before this one
     int place = -1;             ///< position in the order, once eliminated
     bool late = false;
-    bool ready = false;  ///< waits for no node and is not eliminated
+    bool ready = false;  ///< true if it waits for no node and is not eliminated
   };
 
   Candidate& at(int n) { return left_[std::size_t(n)]; }
@@ -109,8 +109,8 @@ class EliminationOrder {
   }
   bool may_go(Candidate const& n) const { return n.waits <= 0 && (!n.late || remaining_early_ == 0); }
 
-  /// Returns the ready node of least degree. If no node is ready, because joints of different loops wait for each
-  /// other, returns the first of the nodes that wait for the fewest others.
+  /// Returns the ready node of least degree. If joints of different loops wait for each other, no node is ready. The
+  /// function then returns the first of the nodes that wait for the fewest others.
   int next() {
     while (!ready_.empty()) {
       std::pop_heap(ready_.begin(), ready_.end());
@@ -158,7 +158,7 @@ class EliminationOrder {
 
 class BlockLayout {
  public:
-  /// Later node that shares a block with a given earlier node.
+  /// Later node that has a block in the rows of an earlier node.
   struct Neighbour {
     int node, column, size;  ///< position in the order, first column in W of the earlier node, number of unknowns
   };

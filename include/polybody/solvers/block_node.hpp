@@ -19,12 +19,12 @@ struct NodeStorage {
   int stride() const { return pad + width; }
 };
 
-/// Ratio of a pivot to the sum of the magnitudes of its terms. If the ratio is smaller, the node is nearly singular,
-/// and D⁻¹ is large compared with the solutions.
+/// Ratio of a pivot to the sum of the magnitudes of its terms, up to which a node is nearly singular. D⁻¹ is then large
+/// compared with the solutions.
 inline constexpr double weak_threshold = 1e-5;
 
 /// Factorises D = L Δ R in registers and returns −1 on success. Calls `reject(r, pivot)` for a pivot of at most
-/// threshold · (scale[r] + |D_rr|). If `reject` returns true, the function returns r; otherwise row r is dropped.
+/// threshold · (scale[r] + |D_rr|). If `reject` returns true, `factor_block` returns r; otherwise it drops row r.
 template <int N, class Reject>
 int factor_block(NodeStorage const& n, double threshold, double const* scale, Reject&& reject) {
   constexpr int count = padded(N) / lane_size;
@@ -200,8 +200,8 @@ struct Triangle {
   double operator()(int r, int p) const { return t[r * row + p * column]; }
 };
 
-/// For `count` SIMD vectors of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up. If `inverse` is given,
-/// each row is then multiplied by the inverse of its pivot.
+/// For `count` SIMD vectors of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up. If `inverse` is not
+/// null, each row is then multiplied by the inverse of its pivot.
 template <int N, int count>
 inline void substitute_back(double* x, int stride, Triangle t, double const* inverse) {
   Lane y[N][count];

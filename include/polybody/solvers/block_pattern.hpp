@@ -206,7 +206,7 @@ class BlockPattern {
       if (!j.used) close(j);
   }
 
-  /// Closing joint: it is eliminated after all bodies and joints of its loop.
+  /// Makes a joint a closing joint: it is eliminated after all bodies and joints of its loop.
   [[gnu::cold]] void close(Joint& j) {
     Segment& s = segments_[std::size_t(j.segment)];
     // An unknown that occurs only in constraint equations, such as the coordinate of a slider, is eliminated last.

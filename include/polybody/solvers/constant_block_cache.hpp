@@ -3,8 +3,8 @@
 /// Linear solver that factorises constant parts of a matrix only once. Example: in a vehicle with tracks of ANCF links
 /// and a hull with rotating joints, the mass matrix TᵀMT of a track is constant if linear joints eliminate the
 /// dependent coordinates [thesis §3.5.4, §4.4]. With TᵀMT = L Lᵀ, the mass matrix of a whole track with its joints is
-/// the identity in the coordinates p = Lᵀ e of the independent coordinates e. Since L is constant, an explicit step in
-/// p is equal to a step in e.
+/// the identity in the coordinates p = Lᵀ e, with the independent coordinates e. Since L is constant, an explicit step
+/// in p is equal to a step in e.
 
 #include <algorithm>
 #include <span>
@@ -89,7 +89,7 @@ class ConstantBlockCache {
       (kept ? to_kept_ : to_rest_).skip(place_[std::size_t(row)], place_[std::size_t(col)], rows, cols);
   }
 
-  /// Returns −1, or the index of the unknown without a usable pivot.
+  /// Returns −1 on success, otherwise the index of the unknown without a usable pivot.
   Index factor() {
     if (!kept_factored_) {
       if (Index const bad = kept_solver_.factor(); bad >= 0) return unknown(bad, true);

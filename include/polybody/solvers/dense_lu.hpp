@@ -25,7 +25,8 @@ class DenseLu {
       for (Index i = 0; i < b.rows; ++i) a_(row + i, col + j) += b(i, j);
   }
 
-  /// Returns −1, or the index of the first column with a pivot of at most 1e-14 times its largest entry.
+  /// Returns −1 on success, otherwise the index of the first column with a pivot of at most 1e-14 times its largest
+  /// entry.
   Index factor() {
     Index const n = a_.cols();
     double* const lu = lu_.data();  // by rows

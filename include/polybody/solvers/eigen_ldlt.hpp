@@ -47,8 +47,8 @@ class EigenLdlt {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// Returns −1, or the index of an unknown without a usable pivot. \throws InvalidInput if the asymmetry is above
-  /// `largest_asymmetry`.
+  /// Returns −1 on success, otherwise the index of an unknown without a usable pivot. \throws InvalidInput if the
+  /// asymmetry is above `largest_asymmetry`.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
@@ -72,7 +72,7 @@ class EigenLdlt {
   }
 
   /// Least ratio of the pivot of a row without a diagonal block to g²/a, where g and a are the largest entries of G and
-  /// A. A redundant row has the ratio `shift`, the least possible one.
+  /// A. The pivot of a redundant row has the least possible ratio, `shift`.
   double least_pivot() const {
     VecX const& d = ldlt_->pivots();
     double least = epsilon_ / shift;

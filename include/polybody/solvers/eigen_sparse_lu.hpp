@@ -21,8 +21,8 @@ class EigenSparseLuBy {
   }
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
-  /// Returns −1, or the index of the first column in elimination order with a pivot of at most 1e-14 times its largest
-  /// entry.
+  /// Returns −1 on success, otherwise the index of the first column in elimination order with a pivot of at most 1e-14
+  /// times its largest entry.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
@@ -56,7 +56,7 @@ class EigenSparseLuBy {
   }
   /// Least ratio of a pivot of the last factorisation to the largest entry of its column.
   double least_pivot() const { return least_pivot_; }
-  /// Sign of the determinant: ±1.
+  /// Sign of the determinant: −1 or 1; 0 for a zero pivot.
   double sign_of_determinant() const { return sink_.matrix().cols() == 0 ? 1.0 : lu_->signDeterminant(); }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);

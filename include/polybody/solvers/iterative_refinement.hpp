@@ -6,9 +6,9 @@
 
 namespace polybody {
 
-/// Linear solver that refines each solution of `Solver` by one iteration x += A⁻¹(b − A x) [Higham 2002, §12.1]. It
-/// stores the blocks of A, and a solution costs about twice as much as with `Solver`. Use it if masses or stiffnesses
-/// differ by ten orders of magnitude or more.
+/// Linear solver that refines each solution of `Solver` by one iteration x += A⁻¹(b − A x) [Higham 2002, §12.1]. This
+/// solver stores the blocks of A, and its solution costs about twice as much as with `Solver`. Use it if masses or
+/// stiffnesses differ by ten orders of magnitude or more.
 template <LinearSolver Solver>
 class IterativeRefinement {
  public:
@@ -30,7 +30,7 @@ class IterativeRefinement {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
     solver_.add(row, col, b);
   }
-  /// Returns −1, or the index of the column without a usable pivot.
+  /// Returns −1 on success, otherwise the index of the column without a usable pivot.
   Index factor() { return solver_.factor(); }
 
   /// x = A⁻¹ b; b and x may be the same vector.

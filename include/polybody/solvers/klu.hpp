@@ -23,8 +23,8 @@ namespace polybody {
 /// does not allocate memory.
 class Klu {
  public:
-  /// Least ratio of KLU's reciprocal pivot growth to its value when the pivots were chosen. At a smaller ratio new
-  /// pivots are chosen, because reused pivots would lose two digits more.
+  /// Least ratio of KLU's reciprocal pivot growth to the value at the choice of the pivots. Below it, new pivots are
+  /// chosen, because reused pivots would lose two digits more.
   static constexpr double least_growth = 1e-2;
   /// Pivots are rejected if KLU's estimate of the reciprocal condition number is at most this value.
   static constexpr double least_condition = 1e-16;
@@ -33,7 +33,8 @@ class Klu {
   /// Uses the elimination order `order` (each unknown once) instead of the order of KLU (block triangular form, AMD).
   explicit Klu(std::span<int const> order) : order_(order.begin(), order.end()) {}
 
-  /// \throws InvalidInput if a given order does not contain each of the `size` unknowns once.
+  /// \throws InvalidInput if the elimination order of the constructor does not contain each of the `size` unknowns
+  /// once.
   void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);
     klu_ = std::make_unique<Handle>();
@@ -46,7 +47,7 @@ class Klu {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// Returns −1, or the index of a column without a usable pivot.
+  /// Returns −1 on success, otherwise the index of a column without a usable pivot.
   Index factor() {
     if (sink_.matrix().cols() == 0) return -1;
     if (klu_->symbolic == nullptr) return empty_column();

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Interface of linear solvers. A solver receives the blocks of the matrix by calls of `add`, or they are written to
-/// the addresses that `slots` returns.
+/// Interface of linear solvers. A solver receives the blocks of the matrix through calls of `add`, or at the addresses
+/// that `slots` returns.
 
 #include <algorithm>
 #include <span>
@@ -35,8 +35,8 @@ struct ReadsBothHalves<S> : std::type_identity<typename S::Unsymmetric> {};
 template <LinearSolver S>
 using UnsymmetricSolver = typename detail::ReadsBothHalves<S>::type;
 
-/// Writes the matrix into the solver and factorises it; writes and factorises it again if the solver changes its
-/// elimination order. Returns −1, or the index of the column without a usable pivot.
+/// Writes the matrix into the solver and factorises it. Repeats both if the solver changes its elimination order.
+/// Returns −1 on success, otherwise the index of the column without a usable pivot.
 template <LinearSolver S>
 Index write_and_factor(S& solver, BlockWriter const& write) {
   for (;;) {

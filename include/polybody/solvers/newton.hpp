@@ -13,19 +13,19 @@
 
 namespace polybody {
 
-/// Conditions to stop, to factorise again and to fail.
+/// Conditions under which a solve by Newton's method stops, factorises again or fails.
 struct NewtonOptions {
   int max_iterations = 20;  ///< number of iterations at which a solve fails, in [1, 10⁶]
   /// Cost of a factorisation, in iterations. The tangent is factorised again if this saves more iterations than it
   /// costs, over as many solves as the last factorisation completed.
   double factorisation_cost = 3.0;
   bool always_refactor = false;  ///< full Newton method: factorise in every iteration
-  int max_growths = 2;           ///< number of growing corrections at which a solve fails
+  int max_growths = 2;           ///< number of growing corrections after which a solve fails
   /// Budget of a solve for real-time loops, in iterations; a factorisation counts as `factorisation_cost` iterations.
   /// When the budget is spent, the solve ends at the first iterate near the solution and reports the last correction.
   /// 0: no budget.
   double budget = 0.0;
-  bool predictive_stop = true;  ///< stop criterion: the next correction, predicted from θ, or else the last correction
+  bool predictive_stop = true;  ///< true: stop by the predicted next correction; false: by the last one
 
   /// \throws InvalidInput if a count is outside [1, 10⁶], if the cost is negative or NaN, or if the budget is below the
   /// cost of a factorisation and an iteration. The message begins with `who`.
@@ -45,8 +45,8 @@ struct NewtonOptions {
   }
 };
 
-/// `singular` and `not_finite` refer to the first iterate. If a later iterate is singular or not finite, the result is
-/// `diverged`.
+/// Result of a solve. `singular` and `not_finite` refer to the first iterate. If a later iterate is singular or not
+/// finite, the result is `diverged`.
 enum class NewtonResult { converged, diverged, singular, not_finite };
 
 /// Result, cost and contraction of a solve.
@@ -64,7 +64,7 @@ struct ReusedFactorisation {
   double theta = 1.0;   ///< contraction rate of the factorisation [1]
   double fresh = 0.05;  ///< expected contraction rate of a new factorisation [1], from previous factorisations
   int served = 0;       ///< number of solves that the factorisation completed
-  double seen = 0.0;    ///< last contraction rate measured with the factorisation [1]; 0: none
+  double seen = 0.0;    ///< last contraction rate measured with the factorisation [1]; 0: not measured
   bool stale = false;   ///< the next solve begins with a new factorisation, as for contacts that change every step
 };
 
@@ -114,7 +114,7 @@ struct NewtonProgress {
     return saved * std::max(reused.served, 1) > options.factorisation_cost;
   }
 
-  /// True if the corrections have stopped shrinking, so that they may consist of round-off.
+  /// True if the corrections shrink too slowly or grow. They may then consist of round-off.
   bool stagnates(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
@@ -148,7 +148,7 @@ struct NewtonSolve {
   bool begins_fresh;  ///< the solve begins with a new factorisation
   NewtonReport report = {};
   NewtonProgress progress = {};
-  bool fresh = false, renewed = false;  ///< the tangent was factorised at the last iterate, at this iterate
+  bool fresh = false, renewed = false;  ///< true if the tangent was factorised at the last, at this iterate
   bool rounding = false;                ///< the correction consists of round-off
   bool restarted = false;               ///< the solve has returned to its first iterate
   bool follows = false;                 ///< the last correction used the current factorisation
@@ -307,7 +307,7 @@ struct NewtonSolve {
 ///   bool evaluate()           evaluates the right-hand side at the iterate; false if it is not finite
 ///   bool refactor()           factorises the tangent at the iterate; false if it is singular
 ///   CorrectionSize solve()    computes the next correction and returns its size; or double: its norm for tolerance 1.
-///                             A second call for one right-hand side follows a new factorisation
+///                             A second call for the same right-hand side follows a new factorisation
 ///   void apply()              adds the correction; or void apply(double part), for damping in full Newton
 ///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that

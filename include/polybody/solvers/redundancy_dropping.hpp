@@ -17,18 +17,18 @@ concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
   { s.dropped() } -> std::convertible_to<std::span<Index const>>;
 };
 
-/// Linear solver for [A, Gᵀ; G, 0] that uses `Solver` and also accepts redundant constraint equations. These are
-/// dropped: their multipliers are zero. `BlockSolver` determines the redundant equations. It factorises the matrix if
-/// `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver` provides it), and in every later factorisation
-/// as long as equations are dropped. `Solver` then factorises the matrix, in which a one on the diagonal replaces the
-/// row and the column of each dropped equation. If this fails (`EigenLdlt` for thin rods, whose M is singular),
-/// `BlockSolver` solves the equations. The wrapper stores a copy of the blocks.
+/// Linear solver for [A, Gᵀ; G, 0] that uses `Solver` and also accepts redundant constraint equations. It drops
+/// redundant equations, so that their multipliers are zero. `BlockSolver` determines the redundant equations. It
+/// factorises the matrix if `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver` provides it), and in
+/// every later factorisation as long as equations are dropped. `Solver` then factorises the matrix, in which a one on
+/// the diagonal replaces the row and the column of each dropped equation. If this fails (`EigenLdlt` for thin rods,
+/// whose M is singular), `BlockSolver` solves the equations. The wrapper stores a copy of the blocks.
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:
-  /// A pivot is weak if its ratio to the largest entry of its column is smaller. A row of G at the distance σ from the
-  /// span of other rows has one pivot of σ² or two pivots of σ, depending on the elimination order. `BlockSolver` drops
-  /// the row if σ² ≤ 1e-9.
+  /// Ratio of a pivot to the largest entry of its column, below which the pivot is weak. A row of G at the distance σ
+  /// from the span of other rows has one pivot of σ² or two pivots of σ, depending on the elimination order.
+  /// `BlockSolver` drops the row if σ² ≤ 1e-9.
   static constexpr double weak = 1e-3;
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -50,7 +50,7 @@ class RedundancyDropping {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
   }
 
-  /// Returns −1, or the index of the column without a usable pivot.
+  /// Returns −1 on success, otherwise the index of the column without a usable pivot.
   Index factor() {
     by_judge_ = false;
     bool judged = !dropped_.empty() && check_step();

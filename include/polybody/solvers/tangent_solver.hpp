@@ -29,8 +29,8 @@ class LinearEquations {
 
   /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
   virtual void analyse(System& system, Index copies, BlockWriter const& write) = 0;
-  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the index
-  /// of an equation without a pivot (`name_of_equation`).
+  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1 on success,
+  /// otherwise the index of an equation without a pivot, for `name_of_equation`.
   virtual Index factor(BlockWriter const& write) = 0;
   /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.
   virtual void solve(VecX const& rhs, VecX& x) = 0;
@@ -85,8 +85,8 @@ class TangentSolver final : public LinearEquations {
     }
   }
 
-  /// Factorises the tangent of the residual at x. Returns −1, or the index of an equation without a pivot
-  /// (`name_of_equation`).
+  /// Factorises the tangent of the residual at x. Returns −1 on success, otherwise the index of an equation without a
+  /// pivot, for `name_of_equation`.
   Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (by_recursion_) return frozen_->factor_balance(x, system.load_factor, k);
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
@@ -108,8 +108,8 @@ class TangentSolver final : public LinearEquations {
     by_copy_[k]->freeze();
   }
 
-  /// True if recursions over a tree under gravity alone factorise the tangent and compute the residual
-  /// (`StepCoordinates::balance`).
+  /// True if recursions over the tree of bodies factorise the tangent and compute the residual
+  /// (`StepCoordinates::balance`). Gravity is then the only force.
   bool by_recursion() const { return by_recursion_; }
 
   /// Linear solver that `analyse` sets up.
@@ -125,7 +125,7 @@ class TangentSolver final : public LinearEquations {
     if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
 
-  /// True if the last factorisation dropped more equations than an earlier one. Its state is then a singular
+  /// True if the last factorisation dropped more equations than an earlier one. The system is then in a singular
   /// configuration. In other states these equations are independent, and the factorisation would not enforce them.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 

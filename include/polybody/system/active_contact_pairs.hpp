@@ -6,14 +6,14 @@
 
 namespace polybody {
 
-/// Selection of the contact pairs of force groups that have blocks in a repeatedly evaluated matrix. A pair is selected
-/// if it was in contact in a recent evaluation, or if a pair with a neighbouring marker and the same contact partner
-/// was. Neighbours are included because, for example, links of a track come into contact one after another.
+/// Selects the contact pairs of force groups whose blocks a repeatedly evaluated matrix contains. A pair is selected if
+/// it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in contact with the same
+/// partner. Neighbours are included because, for example, links of a track come into contact one after another.
 class ActiveContactPairs {
  public:
-  /// Pairs of one force group. Marker i of the many and contact partner j form the pair with the index i · few + j.
+  /// Pairs of one force group. Marker i of the group's many markers and contact partner j form pair i · few + j.
   struct Group {
-    Index few = 0;              ///< number of contact partners; 0 if it is unknown, and pairs have no neighbours
+    Index few = 0;              ///< number of contact partners; 0 if unknown: pairs then have no neighbours
     Sequence<char> has_blocks;  ///< for each pair: nonzero if the pair has blocks in the matrix
     Sequence<long> touched;     ///< for each pair: number of the last evaluation with contact
   };
@@ -24,13 +24,13 @@ class ActiveContactPairs {
     lacks_ = false;
     ++writing_;
   }
-  /// Returns the next group of the model. \param few number of its contact partners; 0 if it is unknown
+  /// Returns the next group of the model. \param few number of contact partners of the group; 0 for an unknown number
   Group& group(Index few) {
     if (next_ == groups_.size()) groups_.push_back({few, {}, {}});
     return groups_[next_++];
   }
-  /// Records in this evaluation that pair k of a group is in contact if `touches` is true. Returns true if the pair has
-  /// blocks.
+  /// Records for this evaluation whether pair k of a group is in contact. Returns true if the pair has blocks in the
+  /// matrix.
   bool note(Group& group, std::size_t k, bool touches) {
     if (k == group.has_blocks.size()) {
       group.has_blocks.push_back(0);

@@ -59,8 +59,8 @@ void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& d
   with_constant(block.rows, [&](auto m) { add_ends<m>(block, lambda, data, r); });
 }
 
-/// out (rows) += map · x for one end of a block. x is the twist of its marker in the evaluated state. For an end
-/// without a marker, x are the velocities of the end in v.
+/// out (rows) += map · x for one end of a block. x is the twist of the end's marker in the evaluated state. For an end
+/// without a marker, x contains the velocities in v that the map multiplies.
 template <StateScalar T>
 void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
   T twist[6];
@@ -71,8 +71,8 @@ void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXO
   }
   add_mapped<0>(end.map, end.columns, x, rows, out);
 }
-/// out (rows) += map · x for one end of a block. x is the twist J b of its marker for any vector b (nv). For an end
-/// without a marker, x are the entries of the end in b.
+/// out (rows) += map · x for one end of a block. x is the twist J b of the end's marker for any vector b (nv). For an
+/// end without a marker, x contains the entries of b that the map multiplies.
 template <StateScalar T>
 void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
   Vec<T, 6> twist;
@@ -178,18 +178,18 @@ void write_rows(Data<double>& data, Index first, BlockSink& sink) {
 /// Capabilities as a constructor argument: `System(model, with<Capabilities::tangent>)`.
 template <Capabilities groups>
 struct With {};
-/// Value of `With` for these capabilities.
+/// Object of type `With` for the capabilities `groups`.
 template <Capabilities groups>
 inline constexpr With<groups> with{};
 
 /// Parts of the tangent that `tangent_of` evaluates separately.
 enum class TangentPart { compliant_joints, force_elements };
 
-/// Equations of motion of a model with their workspace. All other functions refer to the state of the last `evaluate`.
+/// Equations of motion of a model, with their workspace. `evaluate` sets the state to which all other functions refer.
 template <StateScalar T>
 class BasicSystem {
  public:
-  using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations, of the scalar T
+  using Vector = VecXOf<T>;  ///< vector with one T per coordinate, velocity or constraint equation
 
   /// Equations of the model. The model must outlive the system. If the model changes afterwards, evaluations throw.
   template <class M, Capabilities wanted = Capabilities::questions>
@@ -200,7 +200,7 @@ class BasicSystem {
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< refuses a temporary
-  /// Equations from functions of any origin.
+  /// Equations from any implementation of `ModelOperations`, for example equations of a user (`system_of`).
   [[gnu::cold]] BasicSystem(std::shared_ptr<ModelOperations<T> const> operations, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates);
   BasicSystem(BasicSystem&&) noexcept;  ///< invalidates references to the moved system, such as those of a workspace
@@ -229,7 +229,7 @@ class BasicSystem {
     return coordinates_ ? coordinates_.reduced->nonholonomic_equations : layout_.nonholonomic_equations;
   }
 
-  /// Load factor of gravity and loads; it is 1 except inside `equilibrium`.
+  /// Load factor of gravity and loads. It is 1 except during analyses of statics and buckling.
   double load_factor = 1.0;
 
   /// Sets the state: coordinates q (nq), velocities v (nv), time t [s]. Computes all markers and constraint functions.
@@ -275,9 +275,9 @@ class BasicSystem {
           sink);
     });
   }
-  /// Writes the blocks of cd D + ck K into `receiver` for one part of the tangent: each compliant joint, or all force
-  /// elements with second-order terms. For force elements, the second-order terms of constraints with multipliers
-  /// `lambda` are added if `lambda` is not null.
+  /// Writes the blocks of cd D + ck K into `receiver` for one part of the tangent: that of all compliant joints, or
+  /// that of all force elements including their second-order terms. For force elements, the second-order terms of
+  /// constraints with multipliers `lambda` are added if `lambda` is not null.
   template <BlockReceiver S>
   void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
@@ -292,10 +292,11 @@ class BasicSystem {
 
   /// out = q ⊞ delta.
   void plus(Vector const& q, Vector const& delta, Vector& out) const;
-  /// out = rate of delta, if the configuration q ⊞ delta moves with the velocities v and q is constant.
+  /// out = time derivative of delta at constant q, while the configuration q ⊞ delta moves with the velocities v.
   void local_rate(Vector const& delta, Vector const& v, Vector& out) const;
 
-  /// Name of the body or force element with velocity i, or of the body or joint with constraint equation i − nv.
+  /// Name of the owner of unknown i. It is the body or force element of velocity i, or the body or joint of constraint
+  /// equation i − nv.
   std::string name_of(Index i) const;
 
   template <class U>

@@ -2,7 +2,7 @@
 /// \file
 /// Loops over all bodies of one type in a model. The loops depend on the type of the body, but not on the type of the
 /// model. A program therefore compiles them once for all models. With `extern template struct BodyKernels<MyBody,
-/// double>;` another object file must contain them (see polybody/compiled.hpp).
+/// double>;` another object file must contain the loops (see polybody/compiled.hpp).
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/math/sequence.hpp>
@@ -44,7 +44,7 @@ struct BodyKernels {
   using Pool = detail::BodyPool<B>;         ///< bodies of this type, in a model
   using Entry = detail::BodyTableEntry<B>;  ///< one body with its positions in the vectors
   using Kept = detail::BodyData<B, T>;      ///< workspace
-  using Vector = VecXOf<T>;                 ///< coordinates, velocities or constraint equations, of the scalar T
+  using Vector = VecXOf<T>;                 ///< vector with one T per coordinate, velocity or constraint equation
 
   /// Positions of a body in the vectors of its model, and the serial number of this model.
   struct Places {
@@ -73,7 +73,7 @@ struct BodyKernels {
   /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end
   /// of this storage. \param owner position of the first body in the layout
   [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
-  /// Increases `forces` and `tangents` to the number of entries that threads need for the elements of one body.
+  /// Increases `forces` and `tangents` to the numbers of entries that threads need for all elements of one body.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
   /// Evaluates frame, Jacobian and bias of every marker.
@@ -86,7 +86,7 @@ struct BodyKernels {
   static ReducedPosition const* plus(Pool const& pool, ReducedPosition const* places, Vector const& q,
                                      Vector const& delta, Vector& out);
   static ReducedPosition const* local_rate(Pool const& pool, ReducedPosition const* places, Vector const& delta,
-                                           Vector const& v, Vector& out);  ///< out = δ˙ in q ⊞ δ
+                                           Vector const& v, Vector& out);  ///< out = δ˙ if q ⊞ δ moves with v
   /// r += M a − f for the arguments u.
   static void add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data, Vector& r);
 
@@ -94,11 +94,12 @@ struct BodyKernels {
   /// q˙ is computed with dual numbers in `workspace` (2 nq + nv).
   static ReducedPosition const* coordinate_rates(Pool const& pool, ReducedPosition const* places, VecX const& q,
                                                  VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate);
-  /// Velocities v of a rigid motion: v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], in world axes.
+  /// Writes the velocities v of a rigid motion with velocity v0 (3) of the body-fixed point at the world's origin [m/s]
+  /// and angular velocity `omega` (3) [rad/s], in world axes.
   static void rigid_velocities(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
-  static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
+  static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< writes M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
-                       BlockSink& sink);  ///< cm M + cd D + ck K
+                       BlockSink& sink);  ///< writes cm M + cd D + ck K
   /// Writes ck ∂(Gᵀλ)/∂q of the bodies' own equations, with the state and the stiffness coefficient ck of x.
   static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
   /// Writes ck ∂(Jᵀw)/∂q of each marker for its wrench w in data.loads, with the state and the stiffness coefficient
@@ -132,8 +133,8 @@ struct BodyKernels {
   static std::span<T const> velocities(Entry const& e, Vector const& v) {
     return {v.data() + e.v0, std::size_t(e.body.velocities())};
   }
-  /// Calls f(entry, position) for each body, except bodies that joint coordinates carry in reduced vectors. Vectors are
-  /// reduced if `places` is not null. Returns `places` past the last body.
+  /// Calls f(entry, position) for each body. Vectors are reduced if `places` is not null. Bodies that have joint
+  /// coordinates in reduced vectors are then skipped. Returns `places` past the last body.
   template <class F>
   static ReducedPosition const* for_each_place(Pool const& pool, ReducedPosition const* places, F&& f) {
     for (Entry const& e : pool.entries) {

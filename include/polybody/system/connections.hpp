@@ -20,7 +20,7 @@
 
 namespace polybody::detail {
 
-// Check that driving constraints rotate about the axes of the revolute joints between the same bodies.
+// Check that a driving constraint rotates about the axis of the revolute joint between the same bodies.
 
 /// Geometry whose only free rotation is about its own axis.
 template <class G>
@@ -113,7 +113,7 @@ struct ModelParts : ModelCounts {
   }
 };
 
-/// Marker with the pool of its body. A marker of the ground has no pool.
+/// Marker with the pool of the marker's body. A marker of the ground has no pool.
 template <class B>
 struct PooledMarker {
   Marker<B> const& marker;

@@ -15,7 +15,7 @@ namespace polybody {
 struct ReducedLayout {
   /// Sizes of reduced vectors; velocities include first-order states.
   Index coordinates = 0, velocities = 0, rows = 0;
-  Sequence<Index> nonholonomic_equations = {};  ///< indices among the reduced constraint equations
+  Sequence<Index> nonholonomic_equations = {};  ///< indices of the nonholonomic equations in reduced vectors
   Sequence<ReducedPosition> places = {};        ///< positions of the bodies, in the order of the model's layout
   /// Index of the full velocity for each reduced velocity. For a joint coordinate, this is the first velocity of the
   /// body that the joint moves.
@@ -26,14 +26,14 @@ struct ReducedLayout {
     Index q, v;                     ///< indices of its first coordinate and velocity
     Index coordinates, velocities;  ///< numbers of its coordinates and velocities
   };
-  Sequence<Turn> turns = {};  ///< all motions of joints except translations
+  Sequence<Turn> turns = {};  ///< rotations: all joint motions except translations
   /// Indices, in the model, of constraint equations that joint coordinates eliminate but the linear system contains. A
   /// step may store estimates of their multipliers after the multipliers of the remaining equations. The estimates do
   /// not affect the motion; they make the residual of the full model almost zero.
   Sequence<Index> eliminated_equations = {};
   std::vector<std::string> redundant = {};  ///< names of joints with redundant linear constraint equations
 
-  Index equations = 0;            ///< number of unknowns of the linear system; may exceed that of a step
+  Index equations = 0;            ///< number of unknowns of the linear system; may exceed those of a step
   Index equation_velocities = 0;  ///< number of velocities among these unknowns; velocities come first
   /// Index of the full unknown for each unknown of the linear system; empty if the system has the unknowns of a step.
   Sequence<Index> full_unknown = {};
@@ -81,8 +81,8 @@ class CoordinateMap {
   virtual void local_rate(Vector const& delta, Vector const& v, Vector& out) const = 0;
 };
 
-/// Stored state of the maps in which a matrix was written, with the maps to the unknowns of the linear system. This
-/// class stores nothing, for a linear system with the unknowns of a step.
+/// Stored state of the maps at which a matrix was written, with maps between the unknowns of a step and those of the
+/// linear system. This base class stores nothing. Its linear system has the unknowns of a step.
 class FrozenMaps {
  public:
   virtual ~FrozenMaps() = default;
@@ -92,11 +92,11 @@ class FrozenMaps {
   virtual void to_equations(VecX const& rhs, VecX& out) { out = rhs; }
   /// out = unknowns of the step from a solution of the linear system.
   virtual void from_equations(VecX const& solution, VecX& out) { out = solution; }
-  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity
-  /// without a pivot.
+  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1 on success, otherwise the index of
+  /// the velocity without a pivot.
   virtual Index factor(BlockWriter const&) { return -1; }
   /// Articulated-body algorithm: factorises the exact tangent of `StepCoordinates::balance` with the coefficients k.
-  /// Returns −1, or the index of the velocity without a pivot.
+  /// Returns −1 on success, otherwise the index of the velocity without a pivot.
   virtual Index factor_balance(StepPosition const&, double /*load_factor*/, TangentCoefficients const&) { return -1; }
   /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
   virtual void solve(VecX const& /*rhs*/, VecX& /*x*/) {}
@@ -127,8 +127,9 @@ class StepCoordinates<double> : public CoordinateMap<double> {
   /// For `eliminated_equations`: computes the unknowns of the step from a solution of the linear system, at the state
   /// of the last `expand`. The multipliers of the eliminated equations follow them in `out`.
   virtual void correction_from_equations(VecX const& solution, VecX& out) = 0;
-  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity times `load_factor`, or for the
-  /// residual `residual` of the full model. Returns −1, or the index of a velocity without inertia.
+  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity times `load_factor` if `residual`
+  /// is null, otherwise for this residual of the full model. Returns −1 on success, otherwise the index of a velocity
+  /// without inertia.
   virtual Index accelerations(VecX const& q, VecX const& v, double load_factor, VecX const* residual, VecX& out) = 0;
   /// Articulated-body algorithm under gravity times `load_factor` only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
   virtual void balance(StepPosition const& x, double load_factor, VecX& r) = 0;

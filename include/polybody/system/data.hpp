@@ -20,7 +20,7 @@ namespace polybody {
 template <StateScalar T = double>
 struct ConstraintSide {
   Index marker = -1;       ///< number of the marker; −1 if the map multiplies velocities
-  Index first = 0;         ///< index of the first of these velocities
+  Index first = 0;         ///< without a marker: index of the first velocity of this end
   Index columns = 0;       ///< columns of the map: six for a marker, zero for an end that is fixed to the ground
   T const* map = nullptr;  ///< (rows × columns) derivative of ġ with respect to twist or velocities, column-major
 };
@@ -43,7 +43,7 @@ struct ConstraintBlock {
   int rows = 0;                                       ///< number m of equations
   int positions = 0;                 ///< for a linear joint: number of position equations, which come first
   Index owner = 0;                   ///< position of the body or joint in the model's layout
-  ConstraintSide<T> a = {}, b = {};  ///< its two ends
+  ConstraintSide<T> a = {}, b = {};  ///< two ends of the block
   T const* g = nullptr;              ///< (m) constraint violation
   T const* rate = nullptr;           ///< (m) Φ_t; null if the equations do not depend on time
   T const* answer = nullptr;         ///< (m) λ(g, ġ) of a compliant joint
@@ -145,23 +145,23 @@ struct Data {
   Sequence<T> states, rates;              ///< first-order states z of force elements, and ż
   Index first_state = 0;                  ///< index of the first state z among the velocities
 
-  Sequence<Wrench<double>> loads;             ///< wrench of each marker in r, for the second-order terms of the tangent
+  Sequence<Wrench<double>> loads;             ///< wrench on each marker in the residual, for second-order terms
   Sequence<Mat<double, 6, 6>> own_stiffness;  ///< stiffness of each marker of the largest force group
-  Sequence<double> scratch;                   ///< for projected blocks, n×18 and n×n; n: columns of the widest marker
+  Sequence<double> scratch;                   ///< workspace: blocks of n×18 and n×n; n: columns of the widest Jacobian
 
-  bool linear_rows = true;  ///< if false, linear joints and markers of linear joints only are omitted
+  bool linear_rows = true;  ///< if false, linear joints and markers that only these use are omitted
   Sequence<char> read;      ///< for each marker: nonzero if it belongs to a force element or a nonlinear joint
 
   Workers* workers = nullptr;         ///< threads that share the loops; null for one thread
   Sequence<T> element_forces;         ///< with workers: forces of all elements of a body, added later in fixed order
   Sequence<double> element_tangents;  ///< with workers: tangents of the elements, added later in fixed order
-  /// With workers: wrenches on contact partners from one part of a force group. They are added later in fixed order.
+  /// With workers: wrenches of a part of a force group on contact partners. They are added later in a fixed order.
   struct alignas(64) Opposite {
     Sequence<AppliedWrench<T>> actions;  ///< wrenches of one part
   };
   Sequence<Opposite> opposite;                 ///< arrays of wrenches, one for each thread
   static constexpr Index least_elements = 32;  ///< least number of elements per thread
-  static constexpr Index least_pairs = 32;     ///< least number of the many markers of a group per thread
+  static constexpr Index least_pairs = 32;     ///< least number of markers of a force group per thread
   static constexpr Index least_batches = 16;   ///< least number of SIMD vectors of elements per thread
   static constexpr Index least_markers = 128;  ///< least number of markers per thread
 
@@ -173,7 +173,7 @@ struct Data {
   Data(Data&&) = default;             ///< moves the arrays; pointers into them stay valid
   Data& operator=(Data&&) = default;  ///< moves the arrays; pointers into them stay valid
 
-  /// Index of the multiplier λ_i, `i`, among the unknowns, which begin with all velocities.
+  /// Index of the multiplier λ_i among the unknowns. The velocities are the first unknowns.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
   /// True if the evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
   bool leaves_out(ConstraintBlock<T> const& block) const {

@@ -22,7 +22,7 @@ std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) 
   return z;
 }
 
-/// Arguments of a gradient: time [s], factor of the wrenches, and coefficients.
+/// Arguments of a gradient: time [s], factor of the wrenches, and tangent coefficients.
 struct GradientAt {
   double t, scale;
   TangentCoefficients const& c;

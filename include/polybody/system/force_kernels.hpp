@@ -72,7 +72,7 @@ double power_of(std::array<Wrench<double>, n> const& w, std::array<Frame<double>
 }
 
 // The following functions evaluate one force element, or one pair of a group under its law. These functions do not
-// depend on the group, so groups with the same law share them.
+// depend on the group, so groups with the same law use the same compiled functions.
 
 /// Evaluates the wrenches and adds them to `to`.
 template <class L, StateScalar T>

@@ -39,7 +39,7 @@ struct JointData {
   Sequence<Vec<T, J::rows>> answers;
 };
 
-/// Appends the breakpoints of a function of time, at which steps end.
+/// Appends the breakpoints of a function of time to `all`. Steps end at breakpoints.
 template <class Law>
 void add_breakpoints(Law const& law, Sequence<double>& all) {
   if constexpr (HasBreakpoints<Law>)
@@ -73,7 +73,7 @@ constexpr bool has_potential() {
 }
 
 /// λ(g, 0) of those laws of a bushing that have no potential; zero for other laws and policies. \param rest λ(g, 0) of
-/// all
+/// all laws
 template <class P, int m>
 Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   if constexpr (requires { std::get<0>(policy.laws); })

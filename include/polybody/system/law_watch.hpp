@@ -53,7 +53,7 @@ class LawWatch {
   struct Misfit {
     double value, rate;               ///< misfits [unit of the value, and per s]
     double by_rate, by_acceleration;  ///< predicted changes [unit of the value, and per s]
-    bool of_value, of_rate;           ///< true if the misfit exceeds its bound
+    bool of_value, of_rate;           ///< true if the misfit of the value or the rate exceeds its bound
   };
   static Misfit misfit(JointLayout const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
     law.rate = std::max({law.rate, std::abs(from.rate), std::abs(to.rate)});

@@ -152,7 +152,7 @@ struct BodyLayout {
 struct JointLayout {
   std::string name = {};                 ///< name in messages
   Index a = -1, b = -1;                  ///< marker indices
-  Index row = -1, rows = 0;              ///< first constraint equation, number of equations; −1, 0: compliant joint
+  Index row = -1, rows = 0;              ///< first equation and number of equations; −1 and 0: compliant joint
   bool eliminated = false;               ///< true if a time step eliminates the equations
   void const* type = nullptr;            ///< address that identifies the type of the joint
   Index index = 0;                       ///< index among the joints of its type
@@ -174,14 +174,14 @@ struct ForceLayout {
   Index index = 0;               ///< index among the force elements of its type
   void const* force = nullptr;   ///< the force element in the model
   Sequence<Index> markers = {};  ///< marker indices
-  bool is_load = false;          ///< true if the load factor of `equilibrium` scales it
+  bool is_load = false;          ///< true if the load factor multiplies its wrenches
   Index v0 = -1, states = 0;     ///< first of its first-order states among the velocities, and number of states
   bool stores = false;           ///< true if it has a potential
   std::uint64_t made_in = 0;     ///< serial number of the model to which the force was added
   bool stores_in_part = false;   ///< true for a group in which not all laws have a potential
   bool lossless = false;         ///< true if its potential stores all work that is done on the element
-  /// For a contact of two markers a and b: true if they are in contact between the frames `from` [a, b] and `to` [a,
-  /// b], but not at either end of the step. Null for other forces.
+  /// For a contact of two markers a and b: returns true if they touch during a step from the frames `from` [a, b] to
+  /// the frames `to` [a, b], but not at its ends. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
   /// Power that its first-order states dissipate at time t [W]. Null for forces without `HasStatePotential`.
   double (*dissipation)(ForceLayout const& of, double t, Data<double> const& data) = nullptr;
@@ -227,8 +227,8 @@ struct ModelLayout {
       if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return sentence_of({"force \"", f.name, "\""});
     return "unknown";
   }
-  /// Index in `joints` of the joint of each constraint equation; −1 for an equation of a body. For many names, since
-  /// the cost of `name_of` grows with the number of parts.
+  /// Index in `joints` of the joint of each constraint equation; −1 for an equation of a body. Use it for many names,
+  /// because the cost of `name_of` grows with the number of bodies, joints and forces.
   [[gnu::cold]] Sequence<Index> joint_of_rows() const {
     Sequence<Index> of(std::size_t(rows), -1);
     for (std::size_t k = 0; k < joints.size(); ++k)

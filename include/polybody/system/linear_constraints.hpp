@@ -23,9 +23,9 @@ struct LinearConstraints {
   LinearSide a = {}, b = {};  ///< bodies of the two markers
   VecX constant = {};         ///< (rows) c
   Index positions = 0;        ///< number of position equations
-  /// Equations for equal position gradients of a and b, or for equal components of them along an axis.
+  /// Equations that equate one position gradient of a and b, or its component along an axis.
   struct Gradient {
-    Index rows;  ///< number of its equations
+    Index rows;  ///< number of these equations
     MatX map;    ///< map of the gradient of b, or of a if b is the ground
     Vec3 axis;   ///< (3) unit vector in world axes, used for a single equation
   };
@@ -121,7 +121,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);
-  // The constants contain the terms of the ground: r_a − r_b of points without columns.
+  // c = r_a − r_b; a point with columns contributes zero, because only ground points have a constant position.
   V const still = (a.columns == 0 ? a.at : V(V::Zero())) - (b.columns == 0 ? b.at : V(V::Zero()));
   append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;

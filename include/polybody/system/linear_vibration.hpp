@@ -9,7 +9,7 @@ namespace polybody {
 /// Load history: `load(t, f)` writes f(t) to `f` (n).
 template <class L>
 concept LoadHistory = requires(L const load, double t, VecX f) { load(t, f); };
-/// Load with time-varying damping and stiffness (n×n): `add_matrices` adds their changes at time t.
+/// Load with time-varying damping and stiffness (n×n): `add_matrices` adds their changes at time t to d and k.
 template <class L>
 concept TimeVaryingMatrices = requires(L const load, double t, MatX d, MatX k) { load.add_matrices(t, d, k); };
 

@@ -18,7 +18,7 @@ template <class G, class P>
 inline constexpr bool is_joint_type<Joint<G, P>> = true;  // not instantiated here: its own messages come later
 }  // namespace detail
 
-/// Type of a joint: a `Joint`, or a type with its members.
+/// Type of a joint: a `Joint`, or a type with the members of `Joint`.
 template <class J>
 concept JointType = detail::is_joint_type<J>;
 
@@ -232,14 +232,14 @@ inline constexpr bool is_marker_tuple<std::tuple<Ms...>> = true;
 template <class... Ts>
 inline constexpr int marker_count = (int(is_marker<Ts>) + ... + 0);
 
-/// Refuses a joint whose arguments are not two markers.
+/// Refuses arguments of `connect` that are not a joint and two markers.
 template <class J>
 constexpr void refuse_joint_ends() {
   static_assert(std::is_void_v<J>,
                 "A joint connects two markers. A handle of a body makes a marker: model.connect(joint, a.at(point), "
                 "b.at(point)).");
 }
-/// Refuses a force whose arguments are not its markers.
+/// Refuses arguments of `apply` that are not a force and its markers.
 template <class F>
 constexpr void refuse_force_ends() {
   static_assert(std::is_void_v<F>,

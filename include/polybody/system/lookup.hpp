@@ -17,7 +17,7 @@ void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::s
   if (!detail::accepts(layout.serial, layout.ancestors, marker.model)) detail::refuse_marker_of_another_model(what);
 }
 
-/// Requires a ground marker of `model`; see above.
+/// Requires a ground marker of `model`. \throws InvalidInput naming `what` for a marker of another model.
 template <class M>
 void require_own(M const& model, Marker<Ground> const& marker, std::string const& what) {
   model.require_own(marker, what);
@@ -104,21 +104,21 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
                                    x);
 }
 
-/// Body of a handle with its part of the state x, by the layout of its model. \throws InvalidInput for a handle of
-/// another model.
+/// Body of a handle with its part of the state x, found in the layout of its model. \throws InvalidInput for a handle
+/// of another model.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, BodyHandle<B> const& handle) {
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, handle))], x);
 }
-/// Body of a marker with its part of the state x, by the layout of its model. \throws InvalidInput for a marker of
-/// another model, which names `question`.
+/// Body of a marker with its part of the state x, found in the layout of its model. \throws InvalidInput naming
+/// `question` for a marker of another model.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B> const& marker,
                              std::string const& question) {
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, marker, question))], x);
 }
 
-/// Name of the body of a marker, by the layout of its model.
+/// Name of the body of a marker, found in the layout of its model.
 template <class B>
 std::string body_name(ModelLayout const& layout, Marker<B> const& marker) {
   return layout.bodies[std::size_t(index_of(layout, marker, "name"))].name;

@@ -169,8 +169,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Functions of a model for scalar T. The protected functions belong to groups of capabilities. Arguments can be
-/// unused, because a list of joints or forces may be empty.
+/// Functions of a model for scalar T. The protected functions belong to groups of capabilities. Some arguments are
+/// unused if a list of joints or forces is empty.
 template <class M, StateScalar T>
 class ModelLoops;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -269,8 +269,8 @@ class ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> : public
   void write_rigid_velocities(VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) const {
     (BodyKernels<Bs, T>::rigid_velocities(bodies<Bs>(), q, v0, omega, v), ...);
   }
-  /// Powers in a state. Constraint equations of bodies (Euler parameters) and of linear joints do no work and are
-  /// omitted.
+  /// Sums the powers in a state. Constraint equations of bodies (Euler parameters) and of linear joints are omitted,
+  /// because their forces do no work.
   Powers sum_of_powers(At<T> at, VecX const& backwards, VecX const& lambda, [[maybe_unused]] double load_factor,
                        Data<T> const& data) const {
     Powers p;

@@ -78,14 +78,14 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
-  /// Refuses a joint whose type is not in the model's list, with any `others`.
+  /// Refuses a joint whose type is not in the model's list, whatever the other arguments are.
   template <class J, class... Rest>
     requires(!OneOf<J, Js...>)
   auto connect(J const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_joint<J>();
     return ElementHandle<J>{};
   }
-  /// Refuses a joint if two of the `others` are not markers.
+  /// Refuses a joint unless exactly two of the `others` are markers.
   template <OneOf<Js...> J, class... Rest>
     requires(detail::marker_count<Rest...> != 2)
   auto connect(J const&, [[maybe_unused]] Rest const&... others) {
@@ -127,14 +127,15 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Refuses a force whose type is not in the model's list, with any `others`.
+  /// Refuses a force whose type is not in the model's list, whatever the other arguments are.
   template <class F, class... Rest>
     requires(!OneOf<F, Fs...>)
   auto apply(F const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element if it is not applied to its markers, the second argument and the `others`.
+  /// Refuses a force element unless the other arguments contain exactly its one or two markers, or a tuple of its
+  /// markers.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
@@ -166,8 +167,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return x;
   }
 
-  /// First-order states of a force element in x. \throws InvalidInput for a default-constructed handle, one of another
-  /// model, or a state that is too short.
+  /// First-order states of a force element in x. \throws InvalidInput for a default-constructed handle, a handle of
+  /// another model, or a state that is too short.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {
@@ -195,7 +196,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   Gravity const& gravity() const { return parts_.gravity; }  ///< gravity in world axes [m/s²]
   Index coordinates() const { return parts_.coordinates; }   ///< number nq of coordinates of all bodies
-  /// Number nv of generalised velocities of the bodies and first-order states of forces, which follow the velocities.
+  /// Number nv of generalised velocities and first-order states. The states of forces follow the velocities of bodies.
   Index velocities() const { return parts_.velocities + parts_.states; }
   Index states() const { return parts_.states; }  ///< number of first-order states of forces
   Index rows() const { return parts_.rows; }      ///< number of constraint equations of joints and bodies

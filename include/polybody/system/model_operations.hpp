@@ -25,7 +25,7 @@ struct TangentCoefficients {
   /// True if the tangent includes the terms that time steps omit: blocks between the two markers of each pair of a
   /// force group, and derivatives of rates with respect to positions.
   bool exact = false;
-  /// Pairs of force groups with such blocks (system/active_contact_pairs.hpp); null: all pairs.
+  /// Pairs of force groups with blocks between their two markers (system/active_contact_pairs.hpp); null: all pairs.
   ActiveContactPairs* pairs = nullptr;
   double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, with the first-order states z
 };
@@ -34,8 +34,7 @@ struct TangentCoefficients {
 /// Newton's method contracts; statics requires them.
 enum class SecondOrder { omitted, included };
 
-/// Groups of functions of a model. An algorithm names the groups of functions that it requires;
-/// other groups are not compiled.
+/// Groups of functions of a model. An algorithm names the groups that it requires; other groups are not compiled.
 enum class Capabilities : unsigned {
   motion = 0,             ///< markers, constraint functions, forces, M, ⊞, energies: always included
   tangent = 1,            ///< cm M + cd D + ck K
@@ -70,7 +69,7 @@ struct Energy {
 
 /// Powers in a state [W]. Powers that change a stored energy or the energy of gravity are not included; see `Energy`.
 struct Powers {
-  double drives = 0.0;      ///< power of the motions prescribed in joints, compliant joints and on bodies [W]
+  double drives = 0.0;      ///< power of motions prescribed in joints, in compliant joints and on bodies [W]
   double loads = 0.0;       ///< power of loads, and of forces without a potential [W]
   double dissipated = 0.0;  ///< power lost in damped bodies, compliant joints, dampers and contacts, positive [W]
 };
@@ -81,10 +80,10 @@ struct ReducedPosition {
   enum class Kind : unsigned char {
     as_it_is,  ///< all its coordinates
     reduced,   ///< some of its coordinates, with addition as retraction
-    carried    ///< coordinates of the joint that carries it
+    carried    ///< coordinates of the joint that moves the body
   };
   Kind kind = Kind::as_it_is;                           ///< kind of its coordinates
-  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity, numbers of them
+  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity, numbers of both
 };
 
 /// State as the functions of a model receive it: q (nq), v (nv), t.

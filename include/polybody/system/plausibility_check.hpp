@@ -27,7 +27,7 @@ struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
   double worst = 0.0;   ///< largest such error of one step [J]
-  double scale = 0.0;   ///< largest S of `PlausibilityCheck` so far, with 10⁻³ V₀⁺ and the round-off [J]
+  double scale = 0.0;   ///< largest T₀ + max(0, V₀ − V) + 2 W so far, plus 10⁻³ V₀⁺ and round-off [J]
   bool known = false;   ///< true if an energy balance was evaluated
   long halved = 0;      ///< number of steps that were halved for their energy gain
   double peak = 0.0;    ///< largest gain, less its error, at a balance during the run [J]
@@ -43,10 +43,10 @@ struct Unexplained {
 /// potential that depends on time have no energy balance.
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
-/// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
-/// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
-/// step would remove their energy. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The unit
-/// of Σ v² is mixed, so a jump of slow, heavy bodies can be missed; the other balances find it.
+/// value. It halves a step that gains more than ½ limit · S, or that gains a tenth of this and ends with E − E₀ minus
+/// signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation, whose energy a new start
+/// would remove. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The unit of Σ v² is mixed,
+/// so a jump of slow, heavy bodies can be missed; the other balances find it.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -162,7 +162,7 @@ class PlausibilityCheck {
     double gained = 0.0, put_in = 0.0, net = 0.0;      ///< E − E₀, W, signed work [J]
     double kinetic = 0.0, held = 0.0, released = 0.0;  ///< T₀, V₀⁺, max(0, V₀ − V) [J]
     double rounding = 0.0;                             ///< estimated round-off of the energies [J]
-    bool known = false;                                ///< true if the model has such a balance
+    bool known = false;                                ///< true if the model has an energy balance
     /// S [J].
     double scale() const { return kinetic + std::max(held, released) + 2.0 * put_in; }
   };

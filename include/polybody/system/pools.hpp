@@ -81,7 +81,7 @@ struct ForceEntry<F> {
   std::uint64_t made_in = 0;  ///< serial number of the model to which the group was added
 };
 
-/// Solution method for the joint coordinates of a model, given by the first policy with joint coordinates; else void.
+/// Solution method for the joint coordinates of a model: that of the first policy with joint coordinates, or void.
 template <class... Ps>
 struct SolutionAmong {
   using Type = void;

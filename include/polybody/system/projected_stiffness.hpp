@@ -118,8 +118,8 @@ void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n
       if (a->columns > 0 && b->columns > 0) sink.skip(a->first, b->first, a->columns, b->columns);
 }
 
-/// Adds to derivatives with respect to a marker's pose the effect of the pose on the twist at constant velocities of
-/// its body. On a rigid body v = ṙ₀ + ω × ρ. A small rotation e changes ω by e × ω, and v by
+/// Adds the effect of a marker's pose on its twist, at constant velocities of its body, to `of_pose`. On a rigid body v
+/// = ṙ₀ + ω × ρ. A small rotation e changes ω by e × ω, and v by
 ///   (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ)   (Jacobi's identity).
 /// The effect is omitted for markers of other bodies. \param of_twist, of_pose derivatives with respect to twist and
 /// pose (rows × 6), by columns
@@ -159,9 +159,9 @@ void pull_rows(MarkerKinematics<double> const& p, double const* map, double* out
     for (int i = 0; i < 6; ++i) out[6 * k + i] = by_rows[m * i + k];
 }
 
-/// sink += (Gi Ji)ᵀ k (Gj Jj) for a compliant joint with m constraint functions between two markers. Its tangent k is
-/// m×m by columns, or its diagonal. The rows Gi are projected before the multiplication by k. Thus m wrenches per
-/// marker are projected, instead of six per pair.
+/// sink += (Gi Ji)ᵀ k (Gj Jj) for a compliant joint with m constraint functions between two markers. The tangent k of
+/// the joint is stored as an m×m matrix by columns, or only as the diagonal of this matrix. The rows Gi are projected
+/// before the multiplication by k. Thus m wrenches per marker are projected, instead of six per pair.
 template <int m, bool diagonal>
 void add_pulled_slope(std::array<MarkerKinematics<double> const*, 2> const& markers, double const* const (&maps)[2],
                       double const* slope, Sequence<double>& scratch, BlockSink& sink) {

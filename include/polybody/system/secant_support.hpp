@@ -52,7 +52,7 @@ struct SecantSupportOf<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEnt
 template <class M>
 concept FullStateModel = !M::eliminates;
 
-/// Support of energy-conserving integration by the parts of model M.
+/// Support for energy-conserving integration in the bodies, joints and forces of model M.
 template <class M>
 using SecantSupport = detail::SecantSupportOf<typename M::BodyPools, typename M::JointPools, typename M::ForcePools>;
 
