@@ -81,7 +81,7 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
 inline void require_modes(Index count, std::string const& who) {
   if (count < 1)
     throw InvalidInput("modes.count",
-                       {ErrorObject{who}, ": the count of modes must be at least 1, but is ", ErrorValue{count}, "."});
+                       {ErrorObject{who}, ": the number of modes must be at least 1, but is ", ErrorValue{count}, "."});
 }
 
 /// Stiffness K plus a spring on each motion y that has neither inertia nor stiffness: M y = 0 and K y = 0. The columns
