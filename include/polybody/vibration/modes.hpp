@@ -120,8 +120,9 @@ Linearisation linearise(System& system, State const& x) {
   VecX const velocities = x.v.head(x.v.size() - states);
   if (velocities.size() && velocities.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput("modes.not_at_rest",
-                       {ErrorObject{"modes"},
-                        ": the state must be at rest. Use a state from equilibrium(model, x). For a steady rotation "
+                       {ErrorObject{"modes"}, ": the state must be at rest, but the largest velocity is ",
+                        ErrorValue{velocities.cwiseAbs().maxCoeff()},
+                        ". Use a state from equilibrium(model, x). For a steady rotation "
                         "use linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp."});
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.velocities(), rows = system.rows();

@@ -427,7 +427,8 @@ TEST_F(CsvFiles, LinesEndWithLfCrLfOrCr) {
       EXPECT_EQ(table.rows, (std::vector<std::vector<double>>{{1, 2}, {3, 4}}));
     }
     put(file, "a,b" + end + "1,2" + end + "3" + end);
-    EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "line 3: 1 fields for 2 columns"));
+    EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }),
+                    "line 3: the line has 1 fields, but the table has 2 columns"));
     put(file, "a,b" + end + "1,\"2\"3" + end);
     EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "line 2: text follows a closing quote"));
   }
@@ -456,7 +457,7 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
     EXPECT_TRUE(has(said, file.string()));
     return said;
   };
-  EXPECT_TRUE(has(refusal("a,b\n1,2\n3\n"), "line 3: 1 fields for 2 columns"));
+  EXPECT_TRUE(has(refusal("a,b\n1,2\n3\n"), "line 3: the line has 1 fields, but the table has 2 columns"));
   EXPECT_TRUE(has(refusal("a,b\n1,2,\n"), "line 2: 3 fields"));
   EXPECT_TRUE(has(refusal("a,b\n\n1,2,3\n"), "line 3: 3 fields"));
   EXPECT_TRUE(has(refusal("\"a\nb\",c\n1,2\n1,x\n"), "line 4: column \"c\": \"x\""));
