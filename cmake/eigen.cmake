@@ -29,7 +29,7 @@ if(NOT (FETCHCONTENT_SOURCE_DIR_EIGEN3 OR FETCHCONTENT_FULLY_DISCONNECTED OR dec
   if(failed)
     message(
       FATAL_ERROR
-        "polybody needs Eigen 3.4 or newer. It is not installed (Debian: libeigen3-dev), and git does not reach "
+        "polybody needs Eigen 3.4 or newer. It is not installed (Debian: libeigen3-dev), and git cannot reach "
         "${eigen_repository}. Install Eigen, or name its folder: -DFETCHCONTENT_SOURCE_DIR_EIGEN3=<folder with Eigen/Core>.")
   endif()
 endif()

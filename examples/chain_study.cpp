@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
   line.positive("--until", &o.end_time, "end of the runs [s]");
   line.between("--threads", &o.threads, 1, 4096, "that work on points");
   line.option("--out", &o.out, "folder of the record, the tables and the pictures");
-  line.flag("--retry", &o.retry, "tries the points again that have failed");
+  line.flag("--retry", &o.retry, "computes the failed points again");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {

@@ -149,17 +149,17 @@ int main(int argc, char** argv) {
   Options o;
   CommandLine line{"The tracked vehicle in real time, by keys or by a file of orders."};
   line.one_of("--links", &o.links, {"rigid", "ancf", "ffr"}, "formulation of the tracks");
-  line.option("--drive", &o.drive, "file of orders: t,left,right [s, rad/s]; without it keys are read");
-  line.option("--record", &o.record, "file for the orders that are given");
+  line.option("--drive", &o.drive, "file of orders, lines of t,left,right [s, rad/s]; if omitted, keys are read");
+  line.option("--record", &o.record, "file to which the orders are written");
   line.flag("--bumps", &o.bumps, "a bump of 10 cm at 8 m");
-  line.flag("!--no-clock", &o.clock, "as fast as it goes");
+  line.flag("!--no-clock", &o.clock, "run as fast as the processor permits, not in real time");
   line.positive("--until", &o.end_time, "end [s]");
   line.positive("--step", &o.step, "[s]");
-  line.positive("--frame", &o.frame, "time between looks at the clock and at the keys [s]");
-  line.positive("--tolerance", &o.tolerance, "of Newton's method");
+  line.positive("--frame", &o.frame, "time between readings of the clock and of the keys [s]");
+  line.positive("--tolerance", &o.tolerance, "tolerance of Newton's method");
   line.not_negative("--budget", &o.budget, "iterations of a step, a factorisation counting as three; 0: no bound");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius of generalised-alpha at infinity");
-  line.positive("--threads", &o.threads, "that share a step");
+  line.positive("--threads", &o.threads, "number of threads that compute one step");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {
     run(o);

@@ -181,13 +181,13 @@ void run(Options const& o) {
 int main(int argc, char** argv) {
   Options o;
   CommandLine line{"The stiffness and damping of an arm's mount from a noisy record, under four formulations."};
-  line.positive("--stiffness", &o.truth[0], "of the mount that was recorded [N/m]");
-  line.positive("--damping", &o.truth[1], "of the same [N s/m]");
-  line.positive("--turn-stiffness", &o.truth[2], "of the same [N m/rad]");
-  line.positive("--turn-damping", &o.truth[3], "of the same [N m s/rad]");
+  line.positive("--stiffness", &o.truth[0], "stiffness of the recorded mount [N/m]");
+  line.positive("--damping", &o.truth[1], "damping of the recorded mount [N s/m]");
+  line.positive("--turn-stiffness", &o.truth[2], "rotational stiffness of the recorded mount [N m/rad]");
+  line.positive("--turn-damping", &o.truth[3], "rotational damping of the recorded mount [N m s/rad]");
   line.positive("--noise", &o.noise, "deviation of the record's noise [m]");
   line.between("--off", &o.off, 1.0, 5.0, "factor by which the start is off the numbers that were recorded");
-  line.option("--seed", &o.seed, "of the noise");
+  line.option("--seed", &o.seed, "seed of the noise");
   line.positive("--until", &o.experiment.end_time, "end of the record [s]");
   line.option("--out", &o.out, "folder of the pictures");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");

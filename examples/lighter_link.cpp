@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
   CommandLine line{"The lightest link that swings a mass, its stress bounded, under four formulations."};
   line.positive("--allowed", &megapascals, "stress [N/mm^2]");
   line.positive("--payload", &o.task.payload, "mass at the link's end [kg]");
-  line.positive("--time", &o.task.turn.time, "of the turn, a quarter of its whole length or so [s]");
+  line.positive("--time", &o.task.turn.time, "time constant of the turn, about a quarter of its duration [s]");
   line.positive("--sharpness", &o.aggregate.sharpness,
                 "of the aggregate of all stresses; the sharper, the nearer to the largest");
   line.between("--sections", &sections, 1, 8, "of the link, each with its height");

@@ -47,7 +47,7 @@ Reference read_reference(std::string const& file) {
     for (double x; words >> x;) numbers.push_back(x);
   }
   if (numbers.size() < 14)
-    throw IoError(file + ": it holds mass, three moments of inertia and ten frequencies at least.");
+    throw IoError(file + ": the file must contain the mass, three moments of inertia and at least ten frequencies.");
   return {numbers[0], {numbers[1], numbers[2], numbers[3]}, {numbers.begin() + 4, numbers.end()}};
 }
 

@@ -489,8 +489,8 @@ void open_film(Options& o) {
   if (o.film_file.empty()) return;
   if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.halve || o.restart)
     throw InvalidInput(
-        "A film shows one run, or rigid links beside cables: --film and --viewer go with --links, --figure, --compare "
-        "links, --compare pair and --compare ensemble.");
+        "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --links, "
+        "--figure, --compare links, --compare pair and --compare ensemble.");
   o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 4: stress of its links");
   if (!o.figure.empty()) o.film_until = std::min(o.end_time, 10.0);
 }
@@ -519,26 +519,26 @@ int main(int argc, char** argv) {
               "ensemble: rigid and ancf under settings that the thesis does not give",
               "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
-              "where on a link contacts act: all in its middle, or at their places");
+              "points of a link at which contact forces act: all at its middle, or each at its contact point");
   line.option("--link-files", &o.files, "folder of the finite element link's files");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
               "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
   line.flag("--bumps", &o.bumps, "a course with three bumps");
   line.option("--figure", &o.figure, "4.3 to 4.12 of the thesis, or all");
-  line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
+  line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.positive("--until", &o.end_time, "end of the run [s]");
   line.positive("--step", &o.step, "[s]");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
-  line.positive("--cut-off", &o.cut_off, "of the low pass [Hz]");
-  line.one_of("--recovery", &o.recovery, {"static", "vibrating"}, "of stress after a rigid run");
-  line.option("--preload", &o.preload, "of the tensioners [N]");
+  line.positive("--cut-off", &o.cut_off, "cut-off frequency of the low pass [Hz]");
+  line.one_of("--recovery", &o.recovery, {"static", "vibrating"},
+              "computation of the stress after a run of rigid links");
+  line.option("--preload", &o.preload, "preload of the tensioners [N]");
   line.positive("--section", &o.section, "height of a flexible link's section, of that which has a rigid link's mass");
   line.flag("--bands", &o.bands, "figures with the range over settings that the thesis does not give: 12 runs for one");
-  line.flag("--halve", &o.halve, "at this step and at half of it");
-  line.flag("--restart", &o.restart,
-            "whether a run that is taken up from a checkpoint in its middle ends in the same bits");
+  line.flag("--halve", &o.halve, "compares a run with a run of half the step");
+  line.flag("--restart", &o.restart, "checks that a run resumed from a checkpoint ends in the same state, bitwise");
   line.flag("--fatigue", &o.fatigue, "counts cycles of stress by rainflow");
-  line.flag("--audit", &o.audit, "works out where the energy went");
+  line.flag("--audit", &o.audit, "prints the energy balance");
   line.flag("!--unwatched", &o.watched, "a track that leaves its sprocket does not end the run");
   line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
   line.option("--film", &o.film_file,

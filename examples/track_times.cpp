@@ -125,9 +125,9 @@ int main(int argc, char** argv) {
   Options o;
   CommandLine line{"The vehicle by coordinate partitioning and Adams-Bashforth-Moulton: processor times of its pins."};
   line.positive("--until", &o.end_time, "end of the runs [s]");
-  line.positive("--tolerance", &o.tolerance, "relative and absolute, of all runs");
-  line.positive("--limit", &o.limit, "processor time after which a run is cut [s]");
-  line.option("--speed", &o.speed, "of the sprockets from 0.6 s on [rad/s]");
+  line.positive("--tolerance", &o.tolerance, "relative and absolute tolerance of all runs");
+  line.positive("--limit", &o.limit, "processor time after which a run is ended [s]");
+  line.option("--speed", &o.speed, "speed of the sprockets from 0.6 s on [rad/s]");
   line.flag("--names", &o.names, "lists the independent speeds of ideal pins by name");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {

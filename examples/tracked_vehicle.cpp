@@ -226,9 +226,10 @@ void show(Options const& o, Runs const& r) {
 
 void halve(Options const& o) {
   if (o.integrator == "adams" || o.integrator == "dormand-prince")
-    throw InvalidInput("--halve needs an integrator of fixed steps; this one controls its step. Change --tolerance.");
+    throw InvalidInput(
+        "--halve needs an integrator of fixed steps, but this one controls its step. Change --tolerance instead.");
   if (o.integrator == "rk" && o.step == 0.0)
-    throw InvalidInput("--halve by rk needs a --step that the pins can bear, such as 1e-4 s.");
+    throw InvalidInput("--halve with --integrator rk needs a --step at which the pins are stable, such as 1e-4 s.");
   Options half = o, whole = o;
   if (o.step == 0.0) whole.step = implicit_step;
   half.step = 0.5 * whole.step;
@@ -273,15 +274,17 @@ int main(int argc, char** argv) {
               "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
               "projected");
   line.positive("--step", &o.step,
-                "[s], the longest of adams and dormand-prince; without it 0.5 ms, by rk what the pins can bear");
+                "step [s], for adams and dormand-prince the longest; if omitted 0.5 ms, for rk a step at which the "
+                "pins are stable");
   line.positive("--tolerance", &o.tolerance,
-                "of Newton's corrections (without it 1e-5), by adams and dormand-prince of a step's error (1e-6)");
-  line.flag("--halve", &o.halve, "ideal pins at this step and at half of it");
-  line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
+                "tolerance of Newton's corrections (if omitted, 1e-5), for adams and dormand-prince of the error of a "
+                "step (1e-6)");
+  line.flag("--halve", &o.halve, "compares ideal pins at this step and at half of it");
+  line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
               "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
   line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
-  line.option("--preload", &o.preload, "of the tensioners [N]");
+  line.option("--preload", &o.preload, "preload of the tensioners [N]");
   line.positive("--penalty", &o.penalty, "stiffness of penalty pins and bushings [N/m]");
   line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
@@ -290,7 +293,7 @@ int main(int argc, char** argv) {
   line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
   line.option("--film", &o.film_file,
               "film of the run, or of rigid links beside cables; with a viewer, film.html in the folder --out");
-  line.flag("--audit", &o.audit, "works out where the energy went");
+  line.flag("--audit", &o.audit, "prints the energy balance");
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
@@ -299,8 +302,9 @@ int main(int argc, char** argv) {
   try {
     if (o.compare == "matrix")
       throw InvalidInput(
-          "The links of this program are rigid, or cables on pins of their own. Every link on every pin, on the same "
-          "vehicle, is driven by track_stress --compare matrix; give it --speed 25 --rho 0.8 --step 5e-4 for the "
+          "This program has rigid links on all pins except ancf, and cables on the pins ancf only. Every link on every "
+          "pin, on the same vehicle, "
+          "is driven by track_stress --compare matrix; give it --speed 25 --rho 0.8 --step 5e-4 for the "
           "settings of Chapter 3.");
     if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
     if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 3");

@@ -92,10 +92,10 @@ int main(int argc, char** argv) {
   line.between("--seed", &o.seed, 0, 1e9, "of the Latin hypercube");
   line.positive("--until", &o.end_time, "end of the runs [s]");
   line.positive("--step", &o.step, "time step [s]");
-  line.option("--speed", &o.speed, "of the sprockets after 0.7 of the run [rad/s]");
+  line.option("--speed", &o.speed, "speed of the sprockets after 0.7 of the run [rad/s]");
   line.between("--threads", &o.threads, 1, 4096, "that work on points");
   line.option("--out", &o.out, "folder of the record, the tables and the pictures");
-  line.flag("--retry", &o.retry, "tries the points again that have failed");
+  line.flag("--retry", &o.retry, "computes the failed points again");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {

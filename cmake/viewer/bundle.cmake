@@ -2,7 +2,7 @@
 # and passes; the next build after a change of the sources, or of the target by hand, tries again.
 function(give_up what text)
   if(MODE STREQUAL "AUTO")
-    message("The viewer of films is not built, everything else is: ${what}.\n${text}")
+    message("The viewer of films is not built: ${what}. Everything else is built.\n${text}")
     file(REMOVE ${OUT})
     file(TOUCH ${FOLDER}/tried)
   else()

@@ -10,7 +10,8 @@ namespace drive {
 Keyboard::Keyboard() {
   if (isatty(STDIN_FILENO) == 0 || tcgetattr(STDIN_FILENO, &before_) != 0)
     throw polybody::InvalidInput(
-        "Keys are read from a terminal, but the input is none. Drive by a file: --drive FILE.");
+        "The keys of the driver are read from a terminal, but the standard input is not a terminal. Read the orders "
+        "from a file: --drive FILE.");
   termios keys = before_;
   keys.c_lflag &= ~tcflag_t(ICANON | ECHO);
   tcsetattr(STDIN_FILENO, TCSANOW, &keys);

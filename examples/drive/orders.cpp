@@ -28,7 +28,7 @@ std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) 
           line,
           "\"."};
     if (!orders.empty() && order.t < orders.back().t)
-      throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times must not go back."};
+      throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times must not decrease."};
     orders.push_back(order);
   }
   if (orders.empty()) throw IoError{"The drive \"", file.string(), "\" has no line below its head."};

@@ -31,8 +31,8 @@ inline std::string refusal(Options const& o, Combination const& c) {
 inline void require_driveable(Options const& o, Combination const& c) {
   if (!refusal(o, c).empty())
     throw InvalidInput(
-        "Tracks of ANCF cables cannot turn: their pins share a slope across the track that is fixed in the world. "
-        "Take --links rigid, ffr, fe, lrvf, beam or continuum.");
+        "Tracks of ANCF cables cannot turn: at their pins, neighbouring links share a slope vector across the track, "
+        "which is constant in world axes. Use --links rigid, ffr, fe, lrvf, beam or continuum.");
 }
 
 // The runs of several formulations side by side; a film shows rigid links and cables.

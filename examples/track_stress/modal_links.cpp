@@ -10,9 +10,8 @@ std::vector<chapter4::Combination> chapter4::finite_element_links() {
   return links_of<Ffr, Constraint>("fe", [](Options const& o) {
     if (o.section != 1.0)
       throw InvalidInput(
-          "--section is for links of beams: the finite element link has the section of its files. Leave it out, or "
-          "take "
-          "--links ancf, ffr, lrvf, beam or continuum.");
+          "--section applies to links of beams: the finite element link has the section of its files. Omit --section, "
+          "or use --links ancf, ffr, lrvf, beam or continuum.");
     return m113::LinkOf<Ffr>{.model = finite_element_link(o), .terms = o.terms};
   });
 }

@@ -153,7 +153,7 @@ TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
 TEST(SingularPosition, RefusesSpeedsOfNoBranch) {
   std::string const told =
       message_of<InconsistentInitialConditions>([] { warnings_of_flat_start(Radau{}, -4.0, 4.0); });
-  EXPECT_TRUE(has(told, "contradict by"));
+  EXPECT_TRUE(has(told, "contradict each other by"));
   EXPECT_TRUE(has(told, "in a singular configuration, start with the velocities of one branch"));
 }
 // In space the pins of the loop have three redundant constraint equations in every configuration.

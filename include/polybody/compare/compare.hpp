@@ -133,7 +133,7 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
   bool const named = names.empty() || !names.front().empty();
   if (!named || std::adjacent_find(names.begin(), names.end()) != names.end())
     throw InvalidInput("compare.outputs",
-                       {ErrorObject{"compare"}, ": the outputs of \"", run.name, "\" need distinct names."});
+                       {ErrorObject{"compare"}, ": the outputs of \"", run.name, "\" need distinct, nonempty names."});
   if (!earlier.empty() && run.output_names != earlier.front().output_names)
     throw InvalidInput(
         "compare.outputs",

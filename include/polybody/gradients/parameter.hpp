@@ -37,7 +37,8 @@ void check(std::vector<Parameter> const& parameters) {
     for (std::size_t j = 0; j < i; ++j)
       if (p.name == parameters[j].name)
         throw InvalidInput("parameter.name", {"Duplicate parameter name \"", ErrorObject{p.name}, "\"."});
-    if (p.name.empty()) throw InvalidInput("parameter.name", {"Parameter ", ErrorValue{i}, " has no name."});
+    if (p.name.empty())
+      throw InvalidInput("parameter.name", {"Parameter ", ErrorValue{i}, ", counted from 0, has no name."});
     if (!std::isfinite(p.value) || !std::isfinite(p.scale) || p.scale < 0.0)
       throw InvalidInput("parameter.value",
                          {"Parameter \"", ErrorObject{p.name},

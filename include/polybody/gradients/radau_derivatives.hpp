@@ -225,7 +225,7 @@ class RadauStepAdjoint {
     if (bad >= 0)
       throw SingularMatrix(
           "derivative.singular",
-          {"The equations of the adjoint of the step to t = ", ErrorTime{step.before.t + step.h}, " s are singular at ",
+          {"The adjoint equations of the step to t = ", ErrorTime{step.before.t + step.h}, " s are singular at ",
            ErrorObject{name_of_equation(places_.template system<double>(),
                                         bad % equations_of(places_.template system<double>()))},
            ". Avoid the singular configuration, or take a smaller step."});

@@ -257,7 +257,7 @@ class RadauStageSolution {
       if (!std::isfinite(change) || k == most_corrections)
         throw NewtonConvergenceFailure("derivative.not_converged",
                                        {"The stages of the step to t = ", ErrorTime{step.before.t + step.h},
-                                        " s do not converge as they are computed again for the derivatives. Take a "
+                                        " s do not converge when they are recomputed for the derivatives. Take a "
                                         "smaller step."});
       if (change > 0.1 * left) moved = std::numeric_limits<double>::infinity();
       left = change;

@@ -209,10 +209,10 @@ struct AdamsBashforthMoulton {
       }
       if (!(h >= min_step))
         throw MinimumStepReached(
-            "step.minimum",
-            {ErrorObject{"AdamsBashforthMoulton"}, ": the tolerance requires a step below ", min_step,
-             " s at t = ", ErrorTime{x.t},
-             " s. The model is stiff or jumps here: use an implicit integrator or declare the breakpoint."});
+            "step.minimum", {ErrorObject{"AdamsBashforthMoulton"}, ": the tolerance requires a step below ", min_step,
+                             " s at t = ", ErrorTime{x.t},
+                             " s. The model is stiff or discontinuous at this time. Use an implicit integrator, or "
+                             "declare the time as a breakpoint."});
     }
     w.y += w.correction;
     w.split(system);

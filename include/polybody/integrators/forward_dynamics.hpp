@@ -36,7 +36,7 @@ std::string whose_force(System const& s) {
   for (AppliedWrench<double> const& action : s.data().actions)
     for (double const w : action.w)
       if (!(std::abs(w) <= largest_number))
-        return sentence_of({", that of \"", s.layout().forces[std::size_t(action.source)].name, "\""});
+        return sentence_of({" (force element \"", s.layout().forces[std::size_t(action.source)].name, "\")"});
   return "";
 }
 /// Sentence of a message that names a force element with a NaN, infinite or too large force as a possible cause; empty

@@ -128,11 +128,11 @@ class FreeRotations {
     return false;
   }
   [[noreturn, gnu::cold]] static void refuse(System const& system, Body const& b, Vec3 const& turn, double t) {
-    throw NewtonConvergenceFailure(
-        "rotation.not_converged",
-        {"The rotation of ", ErrorObject{system.name_of(b.v)}, " in the step to t = ", ErrorTime{t},
-         " s does not converge: |Ω|h is ", ErrorValue{std::sqrt(squared_norm<double>(turn))}, " rad, but the limit is ",
-         farthest, " rad. Take a smaller step."});
+    throw NewtonConvergenceFailure("rotation.not_converged",
+                                   {"The rotation of ", ErrorObject{system.name_of(b.v)}, " in the step to t = ",
+                                    ErrorTime{t}, " s does not converge: the angular velocity times the step is ",
+                                    ErrorValue{std::sqrt(squared_norm<double>(turn))}, " rad, but the limit is ",
+                                    farthest, " rad. Take a smaller step."});
   }
 
   Sequence<Body> bodies_;

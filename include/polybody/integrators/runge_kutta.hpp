@@ -231,11 +231,11 @@ struct DormandPrince {
       ++report.rejected;
       h *= std::isfinite(error) ? factor : 0.2;
       if (h < min_step)
-        throw MinimumStepReached(
-            "step.minimum",
-            {ErrorObject{"DormandPrince"}, ": the tolerance requires a step below ", min_step,
-             " s at t = ", ErrorTime{x.t},
-             " s. The model is stiff or jumps here: use an implicit integrator or declare the breakpoint."});
+        throw MinimumStepReached("step.minimum",
+                                 {ErrorObject{"DormandPrince"}, ": the tolerance requires a step below ", min_step,
+                                  " s at t = ", ErrorTime{x.t},
+                                  " s. The model is stiff or discontinuous at this time. Use an implicit integrator, "
+                                  "or declare the time as a breakpoint."});
     }
   }
 

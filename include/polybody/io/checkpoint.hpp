@@ -122,7 +122,7 @@ void require_consistent(RunSnapshot const& s, std::size_t left, std::string cons
   };
   require(s.state.q, s.model.coordinates, "coordinates");
   require(s.state.v, s.model.velocities, "velocities");
-  require(s.state.a, s.model.velocities, "rates of velocities");
+  require(s.state.a, s.model.velocities, "accelerations");
   bool const estimates = s.state.lambda.size() > s.model.rows;
   require(s.state.lambda, s.model.rows + (estimates ? s.model.eliminated_equations : 0), "multipliers");
 }

@@ -122,7 +122,7 @@ double mean_square(Curve const& curve) {
 template <class = void>
 void show_amounts(Figure& figure, double least) {
   figure.log_y = true;
-  figure.y_label = "amount of the " + figure.y_label;
+  figure.y_label = "magnitude of the " + figure.y_label;
   std::erase_if(figure.curves, [](Curve const& curve) { return !(largest_amount(curve) > 0.0); });
   for (Curve& curve : figure.curves)
     for (double& y : curve.y) y = std::max(std::abs(y), 1e-3 * least);
@@ -134,9 +134,10 @@ void show_amounts(Figure& figure, double least) {
 template <class = void>
 Figure difference_figure(Comparison const& c, std::size_t i) {
   std::string const &name = c.runs.front().output_names[i], unit(unit_in(name));
-  Figure off =
-      over_time(c, name + ", off \"" + c.runs.front().name + "\"", (unit.empty() ? "difference" : "difference " + unit),
-                [&](auto const& run, std::size_t k) { return run.outputs[i][k] - first_output(c, i, run.times[k]); });
+  Figure off = over_time(c, name + ", difference from \"" + c.runs.front().name + "\"",
+                         (unit.empty() ? "difference" : "difference " + unit), [&](auto const& run, std::size_t k) {
+                           return run.outputs[i][k] - first_output(c, i, run.times[k]);
+                         });
   off.curves.erase(off.curves.begin());
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (Curve& curve : off.curves) {
@@ -189,7 +190,7 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
 template <class = void>
 std::vector<Figure> cost_figure(Comparison const& c) {
   ComparedRun const& first = c.runs.front();
-  Figure figure{.title = "Largest difference from \"" + first.name + "\", and time of computing",
+  Figure figure{.title = "Largest difference from \"" + first.name + "\", and CPU time",
                 .x_label = "CPU time [s]",
                 .y_label = "difference / span of the output",
                 .log_y = true,

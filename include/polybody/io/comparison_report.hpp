@@ -151,7 +151,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
   detail::draw_panels(violations, 1, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
-  detail::draw_panels({detail::over_time(c, "Force of the joint that holds most", "force [N]", force)}, 1,
+  detail::draw_panels({detail::over_time(c, "Force of the joint with the largest peak force", "force [N]", force)}, 1,
                       folder / "joint_force", draw, written);
   detail::draw_panels({detail::over_time(c, "Kinetic energy", "energy [J]",
                                          [](Run run, std::size_t k) { return run.energies[k].kinetic; }),

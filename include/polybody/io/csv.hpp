@@ -89,8 +89,8 @@ class Csv {
   void write_row(std::span<double const> values, std::size_t texts) {
     auto const where = [&] { return "file \"" + file_.name() + "\", row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())
-      throw InvalidInput("table.row_size", {ErrorObject{where()}, ": ", values.size() + texts, " values for ",
-                                            columns_.size(), " columns."});
+      throw InvalidInput("table.row_size", {ErrorObject{where()}, ": the row has ", values.size() + texts,
+                                            " values, but the table has ", columns_.size(), " columns."});
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
         throw InvalidInput("value.not_finite", {ErrorObject{where()}, ", column \"", columns_[i + texts],

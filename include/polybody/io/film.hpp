@@ -205,7 +205,7 @@ std::string viewer_page(std::filesystem::path const& file) {
   std::size_t const slot = page->find(film_slot);
   if (slot == page->npos || page->find(film_slot, slot + 1) != page->npos)
     throw IoError("film.viewer",
-                  {"Film: \"", ErrorObject{file.string()}, "\" is not a viewer of films of polybody.", remedy});
+                  {"Film: \"", ErrorObject{file.string()}, "\" is not a film viewer of polybody.", remedy});
   return std::move(*page);
 }
 

@@ -160,9 +160,9 @@ class FilmScene {
   /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
-      throw InvalidInput("film.arrow",
-                         {ErrorObject{who()},
-                          "an arrow needs a recorded frame, and a set of arrows of this scene. Record a frame first."});
+      throw InvalidInput("film.arrow", {ErrorObject{who()},
+                                        "an arrow needs a recorded frame, and a set of arrows of this scene. Record a "
+                                        "frame first, and use FilmArrows that this scene returned."});
     detail::FilmArrowSet& arrows = arrows_[set.place];
     if (!place.allFinite() || !vector.allFinite())
       throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "an arrow of \"", arrows.label,

@@ -30,8 +30,8 @@ void check(std::vector<TableColumn> const& columns) {
   std::vector<std::string> names{"t [s]"};
   for (TableColumn const& c : columns) {
     if (c.name.empty() || !c.value)
-      throw InvalidInput("table.columns",
-                         {ErrorObject{"tabulate"}, ": column ", names.size(), " lacks a name or a value."});
+      throw InvalidInput("table.columns", {ErrorObject{"tabulate"}, ": column ", names.size(),
+                                           ", counted from 1, lacks a name or a value function."});
     names.push_back(c.name);
   }
   std::ranges::sort(names);

@@ -152,8 +152,8 @@ inline Table read_csv(std::filesystem::path const& file) {
     throw IoError("file.content", {"file \"", ErrorObject{name}, "\" is empty, but needs a head line."});
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())
-      reader.fail(line,
-                  std::to_string(fields.size()) + " fields for " + std::to_string(table.columns.size()) + " columns");
+      reader.fail(line, "the line has " + std::to_string(fields.size()) + " fields, but the table has " +
+                            std::to_string(table.columns.size()) + " columns");
     auto& row = table.rows.emplace_back();
     for (std::size_t j = 0; j < fields.size(); ++j) {
       std::string_view digits = fields[j];

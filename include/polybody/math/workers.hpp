@@ -55,8 +55,8 @@ class Workers {
       std::size_t const started = others_.size() + 1;
       end();
       throw InvalidInput("workers.start",
-                         {ErrorObject{"Workers"}, ": the system starts only ", ErrorValue{started}, " of ", threads,
-                          " threads (", error.what(), "). Request at most as many as there are processors."});
+                         {ErrorObject{"Workers"}, ": the operating system starts only ", ErrorValue{started}, " of ",
+                          threads, " threads (", error.what(), "). Request at most as many as there are processors."});
     }
   }
   Workers(Workers const&) = delete;

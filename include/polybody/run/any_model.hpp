@@ -48,7 +48,7 @@ class AnyModel {
     for (Run const& run : runs_)
       if (run.integrator == &detail::integrator_tag<I>) return run.make(model_.get());
     throw InvalidInput("system.missing_capability",
-                       {"AnyModel was made without ", ErrorObject{I::name},
+                       {"AnyModel was made without the integrator ", ErrorObject{I::name},
                         ". Give it to the constructor: AnyModel(model, stepped_by<...>)."});
   }
 

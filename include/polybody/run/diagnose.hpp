@@ -172,7 +172,7 @@ std::ostream& operator<<(std::ostream& out, Diagnosis const& c) {
   for (std::string const& body : c.unconnected_bodies) out << "not joined to the ground: " << body << '\n';
   if (!c.unsolved.empty()) out << c.unsolved << '\n';
   if (c.stiffest > 0.0)
-    out << sentence_of({"stiffest motion ", c.stiffest, " rad/s, most in ", c.stiffest_at, "; steps that are stable:"});
+    out << sentence_of({"stiffest motion ", c.stiffest, " rad/s, most in ", c.stiffest_at, "; largest stable steps:"});
   for (Diagnosis::StableStep const& s : c.stable_steps)
     out << (&s == &c.stable_steps.front() ? " " : ", ") << s.integrator << sentence_of({" ", s.step, " s"});
   if (c.stiffest > 0.0) out << ", implicit integrators any\n";

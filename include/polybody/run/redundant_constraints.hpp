@@ -185,7 +185,7 @@ template <class Solver>
     throw InconsistentInitialConditions(
         "constraints.contradiction",
         {"The constraint equations of ", ErrorObject{detail::names_in(system, relation.c)},
-         " are redundant but contradict by ", ErrorValue{std::abs(left)}, " in their ", what,
+         " are redundant but contradict each other by ", ErrorValue{std::abs(left)}, " in their ", what,
          " at t = ", ErrorTime{system.at().t},
          " s. Remove one of these joints, make their dimensions and time functions agree, give one a compliant policy "
          "such as Penalty, or, in a singular configuration, start with the velocities of one branch."});

@@ -152,9 +152,9 @@ struct RunReport : RunCounts {
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
     if (found.worst > 0.4 * found.scale)
-      add_warning(
-          sentence_of({"The work of a force over one step is uncertain by ", found.worst, " J, while ", found.scale,
-                       " J were exchanged: the steps do not resolve this force. Repeat the run with half the step."}));
+      add_warning(sentence_of({"The work of a force over one step is uncertain by ", found.worst,
+                               " J, more than 40 % of the exchanged energy (", found.scale,
+                               " J): the steps do not resolve this force. Repeat the run with half the step."}));
     else if (std::abs(found.energy) > limit * found.scale + found.doubt)
       add_warning(
           sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",
@@ -188,8 +188,8 @@ std::ostream& operator<<(std::ostream& out, RunReport const& r) {
                          std::to_string(r.halved), " of them halved."});
   if (r.over_budget > 0)
     text += sentence_of({" ", counted(r.over_budget, "step", "steps"),
-                         " ended at the budget of Newton's method; the largest last correction is ", r.left,
-                         " of its tolerance."});
+                         " reached the budget of Newton's method; the largest last correction is ", r.left,
+                         " times its tolerance."});
   for (RunReport::EventRecord const& event : r.events)
     text += sentence_of({" Event \"", event.name, "\" at t = ", event.time, " s."});
   if (r.stopped) text += " The last event ended the run.";

@@ -127,8 +127,8 @@ std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State
     least = limit;
     warning = sentence_of({"The joint \"", found.joint, "\" is too ", (by_damping ? "strongly damped" : "stiff"),
                            " for ", I::name, ": k h²/m is ", found.omega2 * h * h, " and c h/m is ", rate * h,
-                           " for the mass m that it moves, but the limits are ", found.omega2 * limit * limit, " and ",
-                           rate * limit, ". Take steps of at most ", limit,
+                           " (stiffness k, damping c, step h, moved mass m), but the limits are ",
+                           found.omega2 * limit * limit, " and ", rate * limit, ". Take steps of at most ", limit,
                            " s, a softer joint, or an implicit integrator."});
   }
   return warning;

@@ -29,7 +29,7 @@ struct StepUndo {
            " s. Only the run may change the sizes; the `action` of an event may change entries of q and v."});
     if (!(x.t < end_time))
       throw InvalidInput("run.ended", {ErrorObject{"advance"}, ": the run has ended at t = ", ErrorTime{x.t},
-                                       " s. Check done() before, or give a later `end_time`."});
+                                       " s. Check done() first, or give a later `end_time`."});
     throw InvalidInput("run.clock", {"Double precision does not resolve a step of ", ErrorValue{h},
                                      " s at t = ", ErrorTime{x.t}, " s. Start the run at a time near zero."});
   }

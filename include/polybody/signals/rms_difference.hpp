@@ -45,7 +45,7 @@ class RmsDifference {
     if (samples_ == 0)
       throw InvalidInput(
           "samples.too_few",
-          {ErrorObject{"RmsDifference"}, ": there is no sample of both histories from ", from_, " s to ", to_, " s."});
+          {ErrorObject{"RmsDifference"}, ": no sample of both histories lies between ", from_, " s and ", to_, " s."});
     if (all_ == 0.0)
       throw InvalidInput("samples.zero", {ErrorObject{"RmsDifference"}, ": the reference history is zero at all ",
                                           samples_, " samples, so a relative difference does not exist."});

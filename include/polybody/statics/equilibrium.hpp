@@ -143,7 +143,7 @@ template <class Solver>
   report.warnings.push_back(sentence_of(
       {"The equilibrium is unstable: the stiffness has ", found.negative,
        found.negative == 1 ? " negative pivot" : " negative pivots",
-       " on the motions that the joints allow. In such a motion, ", name_of_motion(path.system, found.motion, largest),
+       " on the motions that the joints allow. One such motion: ", name_of_motion(path.system, found.motion, largest),
        ". A small disturbance leads away from this state. Start nearer to a stable state, or "
        "apply the loads in smaller steps."}));
 }

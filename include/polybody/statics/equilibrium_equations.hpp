@@ -284,8 +284,8 @@ struct EquilibriumPath {
     throw SingularMatrix(
         "equilibrium.singular",
         {"equilibrium: the stiffness is singular", place(), ", first at ", ErrorObject{system.name_of(i)},
-         ": nothing resists that ", name_of_motion(system, least.motion(k), i),
-         ", and the loads excite this motion. Fix every body, or pass a limit point with equilibrium_path."});
+         ": no stiffness resists this motion: ", name_of_motion(system, least.motion(k), i),
+         ". The loads excite it. Fix every body, or pass a limit point with equilibrium_path."});
   }
   /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {

@@ -140,8 +140,8 @@ Points list(std::vector<Column> columns, std::vector<std::vector<double>> const&
   std::vector<double> values;
   for (std::vector<double> const& row : rows) {
     if (row.size() != columns.size())
-      throw InvalidInput("points.size", {"study: a point of the list has ", ErrorValue{row.size()}, " values for ",
-                                         columns.size(), " columns."});
+      throw InvalidInput("points.size", {"study: a point of the list has ", ErrorValue{row.size()},
+                                         " values, but the points have ", columns.size(), " columns."});
     values.insert(values.end(), row.begin(), row.end());
   }
   return {std::move(columns), std::move(values), "list"};

@@ -76,7 +76,7 @@ struct StudyResults {
     std::string all;
     for (Column const& column : points.columns()) all += '"' + column.head() + "\", ";
     for (StudyOutput const& output : outputs) all += '"' + output.head + "\", ";
-    throw InvalidInput("study.no_column", {"study: no column \"", ErrorObject{name}, "\"; there are ",
+    throw InvalidInput("study.no_column", {"study: no column \"", ErrorObject{name}, "\"; the columns are ",
                                            all.substr(0, all.size() - 2), "."});
   }
 };

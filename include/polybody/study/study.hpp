@@ -37,7 +37,7 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
       for (double const x : found) outcome.values.push_back(x);
     if (outcome.values.size() != outputs.size())
       throw StudyUsageError("study.outputs", {"study: the point's function returns ", ErrorValue{outcome.values.size()},
-                                              " numbers for ", outputs.size(), " outputs."});
+                                              " numbers, but the study has ", outputs.size(), " outputs."});
     for (std::size_t j = 0; j < outputs.size(); ++j)
       if (!std::isfinite(outcome.values[j]))
         throw NonFiniteValue("output.not_finite", {"The output \"", ErrorObject{outputs[j].head}, "\" is not finite (",

@@ -21,9 +21,9 @@ using State = StateOf<double>;  ///< state of doubles
 
 namespace detail {
 [[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
-  throw InvalidInput(
-      "state.size",
-      {"The state does not fit the model. Use model.reference_state() after the last body and joint are added."});
+  throw InvalidInput("state.size",
+                     {"The state does not fit the model: their numbers of coordinates, velocities, accelerations or "
+                      "multipliers differ. Use model.reference_state() after the last body and joint are added."});
 }
 }  // namespace detail
 

@@ -42,10 +42,9 @@ struct LinkRollerContact {
     require_positive(radius, name, ": the radius of the roller");
     require_not_negative(chamfer, name, ": the chamfer of the link's edges");
     if (!(handover > 0.0 && handover < 0.5 * pitch))
-      throw InvalidInput(
-          "track_contact.handover",
-          {ErrorObject{name}, ": the handover distance must be positive and below half the pitch, but is ",
-           ErrorValue{handover}, " m."});
+      throw InvalidInput("track_contact.handover",
+                         {ErrorObject{name}, ": the handover distance must be positive and below half the pitch, ",
+                          0.5 * pitch, " m, but is ", ErrorValue{handover}, " m."});
     if (rims.empty())
       throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim. Set `rims`."});
     for (double const y : rims) require_finite(y, name, ": the position of a rim");

@@ -142,8 +142,9 @@ inline void check_wrapped(TrackPath const& path) {
     Vec2 const before = path.pins[i] - path.pins[(i + n - 1) % n], after = path.pins[(i + 1) % n] - path.pins[i];
     double const turn = std::atan2(track_cross(before, after), before.dot(after));
     if (int(i) < path.seated && turn > 1e-9)
-      throw InvalidInput("track.sprocket", {"Track: no pin can sit on \"", ErrorObject{layout.sprocket.name},
-                                            "\", which lies inside the run that passes it. Move it outwards."});
+      throw InvalidInput("track.sprocket",
+                         {"Track: no pin can sit on \"", ErrorObject{layout.sprocket.name},
+                          "\", which lies inside the line between its neighbours. Move the sprocket outwards."});
     if (std::abs(turn) > 0.5 * std::numbers::pi + 1e-9) {
       int const on = std::max(path.links[i].touches, path.links[(i + n - 1) % n].touches);
       throw InvalidInput("track.pitch",

@@ -73,10 +73,9 @@ class PrebucklingPath {
   void require_balance(VecX const& r) const {
     double const scale = largest_size(loads_);
     if (scale == 0.0)
-      throw InvalidInput("buckling.no_load",
-                         {ErrorObject{"buckling_modes"},
-                          ": the model has no load. Apply a force in the direction of interest; the result is its "
-                          "factor."});
+      throw InvalidInput("buckling.no_load", {ErrorObject{"buckling_modes"},
+                                              ": the model has no load. Apply a force in the direction of interest; "
+                                              "the load factors of the modes multiply it."});
     if (largest_size(r) <= 1e-6 * scale) return;
     throw InvalidInput(
         "buckling.no_equilibrium",

@@ -81,7 +81,7 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
 inline void require_modes(Index count, std::string const& who) {
   if (count < 1)
     throw InvalidInput("modes.count",
-                       {ErrorObject{who}, ": the count of modes must be at least 1, but is ", ErrorValue{count}, "."});
+                       {ErrorObject{who}, ": the number of modes must be at least 1, but is ", ErrorValue{count}, "."});
 }
 
 /// Stiffness K plus a spring on each motion y that has neither inertia nor stiffness: M y = 0 and K y = 0. The columns
@@ -120,8 +120,9 @@ Linearisation linearise(System& system, State const& x) {
   VecX const velocities = x.v.head(x.v.size() - states);
   if (velocities.size() && velocities.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput("modes.not_at_rest",
-                       {ErrorObject{"modes"},
-                        ": the state must be at rest. Use a state from equilibrium(model, x). For a steady rotation "
+                       {ErrorObject{"modes"}, ": the state must be at rest, but the largest velocity is ",
+                        ErrorValue{velocities.cwiseAbs().maxCoeff()},
+                        ". Use a state from equilibrium(model, x). For a steady rotation "
                         "use linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp."});
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.velocities(), rows = system.rows();

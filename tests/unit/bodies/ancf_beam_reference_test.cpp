@@ -217,10 +217,10 @@ TEST(AncfBeam, NamesWhatTheBarDoesNotGive) {
   EXPECT_TRUE(has(refused<AncfBeam<>>(b), "EI_y"));
   b = by_constants();
   b.constants->rotary_inertia = 0.0;
-  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "the rotary inertia of the bar, the only mass of r_y"));
+  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "the rotary inertia of the bar, the mass of the gradient r_y"));
   b = by_constants();
   b.constants->rotary_inertia_y = 0.0;
-  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "about y, the only mass of r_z"));
+  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "about y, the mass of the gradient r_z"));
   EXPECT_TRUE(has(refused<AncfBeam<>>(by_constants(), 0), "at least one element"));
   b = by_constants();
   b.length = 0.0;
@@ -246,15 +246,15 @@ TEST(AncfBeam, RefusesCurvesThatNoBarFollows) {
   };
   Bar b = bar();
   b.length = 0.3;
-  EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0: the element is turned inside out"));
+  EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0, counted from 0: the element is turned inside out"));
   b.section = Rectangle{.height = 0.05, .width = 0.3};  // width across the plane of curvature is allowed
   EXPECT_NO_THROW((void)AncfBeam<>::from(b, 12, sharp));
   b.section = Circle{.radius = 0.11};
-  EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0: the element is turned inside out"));
+  EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0, counted from 0: the element is turned inside out"));
   EXPECT_TRUE(
       has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(2 * s, 0, 0)}; }), "must be its arc length"));
   EXPECT_TRUE(has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(s > 1 ? 0.65 : s, 0, 0)}; }),
-                  "element 1: the ends of the element coincide"));
+                  "element 1, counted from 0: the ends of the element coincide"));
   EXPECT_TRUE(has(refused_curve(bar(), 2, [](double s) { return Placement{Vec3(s, 0, 0), 2 * Mat3::Identity()}; }),
                   "the reference curve at s = 0"));
 }

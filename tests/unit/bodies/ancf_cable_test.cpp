@@ -169,7 +169,7 @@ TEST(SpatialCable, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 0); }), "AncfCable: at least one element"));
   auto const too_fast = [](double s) { return Placement::at({1.5 * s, 0, 0}); };
   EXPECT_TRUE(
-      has(refusal([&] { AncfCable<>::from(bar, 4, too_fast); }), "element 1 of the reference curve is strained"));
+      has(refusal([&] { AncfCable<>::from(bar, 4, too_fast); }), "element 1, counted from 1, has a strain of "));
   bar.pretension = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 1); }), "the pretension must be finite"));
   bar.pretension = 0.0;

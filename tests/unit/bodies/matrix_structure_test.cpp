@@ -112,7 +112,7 @@ TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
   EXPECT_NO_THROW(block.structure());
   for (Vec3& node : block.nodes) node *= 1e3;
   std::string const message = refusal([&] { block.structure(); });
-  EXPECT_TRUE(has(message, "nodes, masses and stiffness have different units: waves would travel at ")) << message;
+  EXPECT_TRUE(has(message, "nodes, masses and stiffness have inconsistent units: waves would travel at ")) << message;
   EXPECT_TRUE(has(message, "Give nodes in metres")) << message;
   EXPECT_NO_THROW(structure_of(block.mass.sparseView(), block.stiffness.sparseView(), block.nodes, 1e8));
 }
@@ -362,8 +362,8 @@ TEST_F(MatrixFiles, LinesEndWithLfCrLfOrCr) {
 
 TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   std::string const where = mass + ", line ";
-  EXPECT_TRUE(has(told(1, "%%MatrixMarket matrix array real general"), where + "1: this is not"));
-  EXPECT_TRUE(has(told(1, "1 2 3"), where + "1: this is not"));
+  EXPECT_TRUE(has(told(1, "%%MatrixMarket matrix array real general"), where + "1: the first line must be"));
+  EXPECT_TRUE(has(told(1, "1 2 3"), where + "1: the first line must be"));
   EXPECT_TRUE(has(told(3, "24 24"), where + "3: \"24 24\" is not the number of rows"));
   EXPECT_TRUE(has(told(3, "27 27 108"), where + "3: the matrix is 27×27, but the 8 nodes of " + nodes + " need 24×24"));
   EXPECT_TRUE(has(told(3, "24 24 107"),
@@ -387,7 +387,7 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
 TEST_F(MatrixFiles, TruncatedAndMissingFilesAreNamed) {
   auto const told_now = [&] { return message_of<IoError>([&] { read_structure(mass, stiffness, nodes); }); };
   write(mass, {});
-  EXPECT_TRUE(has(told_now(), mass + ", line 1: this is not"));
+  EXPECT_TRUE(has(told_now(), mass + ", line 1: the first line must be"));
   write(mass, {banner, "% no more"});
   EXPECT_TRUE(has(told_now(), mass + ", line 3: the file ends before the number of rows"));
   std::filesystem::remove(mass);

@@ -111,8 +111,8 @@ TYPED_TEST(NaturalShape, YieldsToARadialForceAsCastiglianoSays) {
 TYPED_TEST(NaturalShape, IsRefusedWhereItIsNoCurve) {
   EXPECT_TRUE(has(refusal([] { TypeParam::naturally_curved(bar(), 4, {}); }), "curve is an empty function"));
   auto const twice = [](double s) { return arc()(2.0 * s); };  // not a function of its arc length
-  EXPECT_TRUE(
-      has(refusal([&] { TypeParam::naturally_curved(bar(), 4, twice); }), "Parametrise the curve by its arc length"));
+  EXPECT_TRUE(has(refusal([&] { TypeParam::naturally_curved(bar(), 4, twice); }),
+                  "Parametrise the reference curve by its arc length"));
   auto const rising = [](double s) { return Placement::at({s, 0, 0.1 * s}); };
   EXPECT_TRUE(has(refusal([&] { TypeParam::naturally_curved(bar(), 4, rising); }), "plane"));
 }

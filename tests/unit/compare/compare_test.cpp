@@ -165,8 +165,9 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
-  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need distinct names"));
-  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{""}}, Ideal{}); }), "need distinct names"));
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }),
+                  "\"ideal\" need distinct, nonempty names"));
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{""}}, Ideal{}); }), "need distinct, nonempty names"));
   EXPECT_TRUE(has(refusal([] { compare(Pendulum{}, Ideal{"ideal"}, Ideal{"of its own mind"}); }),
                   "the outputs of \"of its own mind\" differ from those of \"ideal\""));
 }

@@ -146,7 +146,7 @@ TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
   auto const said = [](auto const& make, std::vector<Parameter> const& parameters, GeneralisedAlpha const& i = {}) {
     return refusal([&] { sensitivities(make, parameters, i); });
   };
-  EXPECT_TRUE(has(said(pendulum, {{"", 1.0}}), "Parameter 0 has no name"));
+  EXPECT_TRUE(has(said(pendulum, {{"", 1.0}}), "Parameter 0, counted from 0, has no name"));
   EXPECT_TRUE(has(said(pendulum, {{"a", 1.0}, {"a", 1.0}}), "Duplicate parameter name \"a\""));
   EXPECT_TRUE(has(said(pendulum, {{"length [m]", 0.0}}), "is zero and has no scale"));
   EXPECT_TRUE(has(said(pendulum, {{"length [m]", std::nan("")}}), "finite"));

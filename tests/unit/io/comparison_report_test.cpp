@@ -205,10 +205,10 @@ TEST_F(ComparisonReport, DifferencesFromTheFirstRunStandBesideTheCurves) {
   auto const blocks = blocks_of(folder / "outputs.dat");
   EXPECT_EQ(blocks.size(), 6u);
   // x differs by 1e-3 t, apart from the error of cubics through steps of 0.1 s of cos t: 0.1⁴ 9/384
-  auto const& off = blocks.at("x [m], off \"ideal, \"1\"\" | stiff/ρ");
+  auto const& off = blocks.at("x [m], difference from \"ideal, \"1\"\" | stiff/ρ");
   ASSERT_EQ(off.size(), 41u);
   for (auto const& [t, difference] : off) EXPECT_NEAR(difference, 1e-3 * t, 3e-6) << t;
-  EXPECT_FALSE(blocks.contains("x [m], off \"ideal, \"1\"\" | ideal, \"1\""));
+  EXPECT_FALSE(blocks.contains("x [m], difference from \"ideal, \"1\"\" | ideal, \"1\""));
 }
 
 TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
@@ -271,7 +271,7 @@ TEST_F(ComparisonReport, LargeDifferencesDoNotHideSmallOnes) {
   EXPECT_EQ(labels(far), (std::vector<std::string>{"off by -0.005", "off by 0.001", "off by 2e-05"}));
   EXPECT_EQ(far.curves[0].colour, 2);  // the colour of this run in every figure
   EXPECT_TRUE(far.log_y);              // a ratio of 250
-  EXPECT_EQ(far.y_label, "amount of the difference [m]");
+  EXPECT_EQ(far.y_label, "magnitude of the difference [m]");
   EXPECT_NEAR(far.curves[0].y[7], 5e-3, 1e-12);
   EXPECT_NEAR(far.curves[2].y[7], 2e-5, 1e-12);
   c.runs.pop_back();
@@ -286,7 +286,7 @@ TEST_F(ComparisonReport, CostShowsDifferenceOverTimeOfComputing) {
   write_figures(c, folder, false);
   auto const blocks = blocks_of(folder / "cost.dat");
   ASSERT_EQ(blocks.size(), 2u);
-  std::string const title = "Largest difference from \"ideal, \"1\"\", and time of computing | ";
+  std::string const title = "Largest difference from \"ideal, \"1\"\", and CPU time | ";
   auto const& point = blocks.at(title + "stiff/ρ");
   ASSERT_EQ(point.size(), 1u);
   EXPECT_EQ(point[0][0], 0.25);                // s

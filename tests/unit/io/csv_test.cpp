@@ -66,7 +66,8 @@ TEST_F(CsvFiles, WritesATextBeforeNumbers) {
   std::vector<double> const values{1.0, 0.1}, few{1.0};
   csv.row("tip, x [m]", values);
   csv.row("", values);
-  EXPECT_TRUE(has(refusal([&] { csv.row("mass [kg]", few); }), "row 3: 2 values for 3 columns"));
+  EXPECT_TRUE(
+      has(refusal([&] { csv.row("mass [kg]", few); }), "row 3: the row has 2 values, but the table has 3 columns"));
   csv.close();
   EXPECT_EQ(text_of(file), "quantity,soft,stiff\n\"tip, x [m]\",1,0.1\n,1,0.1\n");
   EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "\"tip, x [m]\" is not a finite number"));
@@ -154,7 +155,7 @@ TEST_F(CsvFiles, RefusesBadRowsByNameAndGoesOnUnharmed) {
   csv.row(0, 0);
   auto const few = message_of<InvalidInput>([&] { csv.row(1); });
   EXPECT_TRUE(has(few, file.string()));
-  EXPECT_TRUE(has(few, "row 2: 1 values for 2 columns"));
+  EXPECT_TRUE(has(few, "row 2: the row has 1 values, but the table has 2 columns"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row(1, 2, 3); }), "3 values"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row(); }), "0 values"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row({}); }), "0 values"));
@@ -426,7 +427,8 @@ TEST_F(CsvFiles, LinesEndWithLfCrLfOrCr) {
       EXPECT_EQ(table.rows, (std::vector<std::vector<double>>{{1, 2}, {3, 4}}));
     }
     put(file, "a,b" + end + "1,2" + end + "3" + end);
-    EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "line 3: 1 fields for 2 columns"));
+    EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }),
+                    "line 3: the line has 1 fields, but the table has 2 columns"));
     put(file, "a,b" + end + "1,\"2\"3" + end);
     EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "line 2: text follows a closing quote"));
   }
@@ -455,7 +457,7 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
     EXPECT_TRUE(has(said, file.string()));
     return said;
   };
-  EXPECT_TRUE(has(refusal("a,b\n1,2\n3\n"), "line 3: 1 fields for 2 columns"));
+  EXPECT_TRUE(has(refusal("a,b\n1,2\n3\n"), "line 3: the line has 1 fields, but the table has 2 columns"));
   EXPECT_TRUE(has(refusal("a,b\n1,2,\n"), "line 2: 3 fields"));
   EXPECT_TRUE(has(refusal("a,b\n\n1,2,3\n"), "line 3: 3 fields"));
   EXPECT_TRUE(has(refusal("\"a\nb\",c\n1,2\n1,x\n"), "line 4: column \"c\": \"x\""));

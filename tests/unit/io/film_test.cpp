@@ -269,7 +269,7 @@ TEST_F(FilmFiles, RefuseAViewerThatIsNotThere) {
                   "none.html\" does not exist. Build polybody's"));
   EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder}); }), "does not exist"));
   std::ofstream(folder / "page.html") << "<p>";
-  EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder / "page.html"}); }), "is not a viewer of films"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder / "page.html"}); }), "is not a film viewer"));
   EXPECT_TRUE(has(refusal([&] { Film({.viewer = bare_viewer, .frames_per_second = 0.0}); }), "frames per second"));
   EXPECT_TRUE(has(refusal([&] { Film({.viewer = bare_viewer, .up = Vec3(2, 3, -1.5)}); }), "look_from and up"));
 }

@@ -74,7 +74,7 @@ TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
     return refusal([&] { tabulate(run({.end_time = 0.1, .step = 1e-2}), these, sampling); });
   };
   auto const zero = [](State const&) { return 0.0; };
-  EXPECT_TRUE(has(said({{"", zero}}), "column 1 lacks a name or a value"));
+  EXPECT_TRUE(has(said({{"", zero}}), "column 1, counted from 1, lacks a name or a value"));
   EXPECT_TRUE(has(said({{"x [m]", zero}, {"y [m]", {}}}), "column 2 lacks"));
   EXPECT_TRUE(has(said({{"x [m]", zero}, {"x [m]", zero}}), "duplicate column \"x [m]\""));
   EXPECT_TRUE(has(said({{"t [s]", zero}}), "duplicate column \"t [s]\""));

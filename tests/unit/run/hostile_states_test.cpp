@@ -93,8 +93,8 @@ TEST(HostileStates, CountsOfModesAreOneAtLeast) {
   Hanging const h;
   State const x = h.model.reference_state();
   for (Index const count : {Index(0), Index(-1), std::numeric_limits<Index>::min()}) {
-    EXPECT_TRUE(has(refusal([&] { modes(h.model, x, count); }), "modes: the count of modes must be at least 1"));
-    EXPECT_TRUE(has(refusal([&] { damped_modes(h.model, x, count); }), "the count of modes must be at least 1"));
+    EXPECT_TRUE(has(refusal([&] { modes(h.model, x, count); }), "modes: the number of modes must be at least 1"));
+    EXPECT_TRUE(has(refusal([&] { damped_modes(h.model, x, count); }), "the number of modes must be at least 1"));
   }
   EXPECT_EQ(modes(h.model, x, std::numeric_limits<Index>::max()).frequency.size(), 3);
 }

@@ -44,7 +44,7 @@ void expect_end(I const& integrator) {
   auto run = simulate(p.model, p.x, integrator, {.end_time = 0.1, .step = 0.01});
   run.run();
   State const end = p.x;
-  EXPECT_TRUE(has(refusal([&] { run.advance(); }), "advance: the run has ended at t = 0.1 s. Check done() before"));
+  EXPECT_TRUE(has(refusal([&] { run.advance(); }), "advance: the run has ended at t = 0.1 s. Check done() first"));
   EXPECT_EQ(p.x.q, end.q);
   Pendulum still;
   auto none = simulate(still.model, still.x, integrator, {.end_time = 0.0, .step = 0.01});

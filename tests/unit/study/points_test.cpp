@@ -63,7 +63,8 @@ TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
   EXPECT_TRUE(has(refusal([] { axis("step\n", "s", {1.0}); }), "empty or not printable"));
   EXPECT_TRUE(
       has(refusal([] { grid(axis("step", "s", {1.0}), axis("step", "s", {1.0})); }), "duplicate column \"step\""));
-  EXPECT_TRUE(has(refusal([] { list({{"a"}, {"b"}}, {{1.0, 2.0}, {1.0}}); }), "1 values for 2 columns"));
+  EXPECT_TRUE(
+      has(refusal([] { list({{"a"}, {"b"}}, {{1.0, 2.0}, {1.0}}); }), "1 values, but the points have 2 columns"));
   EXPECT_TRUE(has(refusal([] { list({{"a", "", {"one"}}}, {{1.0}}); }), "none of the 1 choices"));
   EXPECT_TRUE(has(refusal([] { list({{"a", "", {"one", "two"}}}, {{0.5}}); }), "none of the 2 choices"));
   EXPECT_TRUE(has(refusal([] { list({}, {}); }), "at least one column"));

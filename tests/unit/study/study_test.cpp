@@ -130,8 +130,8 @@ TEST_F(StudyFiles, OtherExceptionsEndTheStudy) {
                       [&] { study.run(stops_at(7, [](Point const& p) { p["no such"]; }), with_threads(2)); }),
                   "no column \"no such\""));
   EXPECT_GE(study.recorded().finished(), 7u);
-  EXPECT_TRUE(
-      has(message_of<StudyUsageError>([&] { study.run([](Point const&) { return 1.0; }); }), "1 numbers for 2"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { study.run([](Point const&) { return 1.0; }); }),
+                  "1 numbers, but the study has 2"));
 }
 
 TEST_F(StudyFiles, AProcessThatIsKilledLosesAndRepeatsNothing) {
@@ -346,7 +346,7 @@ TEST_F(StudyFiles, CurvesAreToldApartByParameters) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].x.size(), 10u);
   EXPECT_TRUE(
-      has(refusal([&] { curves_of(found, "x", "sum [m]"); }), "no column \"x\"; there are \"stiffness [N/m]\""));
+      has(refusal([&] { curves_of(found, "x", "sum [m]"); }), "no column \"x\"; the columns are \"stiffness [N/m]\""));
   EXPECT_TRUE(has(refusal([&] { curves_of(found, "step", "sum [m]", {"sum [m]"}); }), "is not a parameter"));
 }
 
@@ -471,7 +471,7 @@ TEST_F(StudyFiles, StatisticsAreThoseOfTheFinishedPoints) {
   EXPECT_DOUBLE_EQ(y.quantile(1.0), 16.0);
   EXPECT_DOUBLE_EQ(rank_correlation(found, "x", "y"), 1.0);
   EXPECT_DOUBLE_EQ(rank_correlation(found, "y", "z"), -1.0);
-  EXPECT_TRUE(has(refusal([&] { statistics(found, "w"); }), "no column \"w\"; there are \"x\", \"y\", \"z\""));
+  EXPECT_TRUE(has(refusal([&] { statistics(found, "w"); }), "no column \"w\"; the columns are \"x\", \"y\", \"z\""));
   EXPECT_TRUE(has(refusal([&] { y.quantile(1.5); }), "must lie in [0, 1]"));
   // Ranks 1 2 3 4 and 1.5 1.5 3.5 3.5: Σab = 4, Σaa = 5, Σbb = 4.
   Study const ties({folder / "b.study"}, axis("x", "", {1.0, 2.0, 3.0, 4.0}), outputs("y"));

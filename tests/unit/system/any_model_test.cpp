@@ -90,7 +90,7 @@ TEST(AnyModel, NamesTheIntegratorThatItWasMadeWithout) {
   AnyModel const any(model, stepped_by<GeneralisedAlpha>);
   State x = any.reference_state();
   EXPECT_EQ(refusal([&] { simulate(any, x, Radau{}, {.end_time = 1.0, .step = 1e-2}); }),
-            std::string("AnyModel was made without ") + Radau::name +
+            std::string("AnyModel was made without the integrator ") + Radau::name +
                 ". Give it to the constructor: AnyModel(model, stepped_by<...>).");
 }
 

@@ -142,7 +142,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     if (alpha < 0 || alpha > 2)
       throw InvalidInput(
           "ancf.gradient_direction",
-          {ErrorObject{"AncfBeam"}, ": the direction of the gradient must be 0, 1 or 2 for x, y, z, but is ",
+          {ErrorObject{"AncfBeam"}, ": the direction of the position gradient must be 0 (x), 1 (y) or 2 (z), but is ",
            ErrorValue{alpha}, "."});
     return map_of(p, alpha + 1);
   }
@@ -268,17 +268,16 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// Checks the reference of element `e`.
   /// \throws InvalidInput for ends that coincide, a chord longer than the element, or a section turned inside out.
   void check_reference(ancf::Reference const& ref, Index e) const {
-    std::string const what = sentence_of({Elastic::name, ": element ", e});
+    std::string const what = sentence_of({Elastic::name, ": element ", e, ", counted from 0"});
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
     if (!(chord > 1e-6 * l_))
       throw InvalidInput(
           "reference_curve.element",
-          {ErrorObject{what}, ": the ends of the element coincide. Use more elements, or another curve."});
+          {ErrorObject{what}, ": the ends of the element coincide. Use more elements, or another reference curve."});
     if (chord > (1.0 + 1e-6) * l_)
-      throw InvalidInput(
-          "reference_curve.arc_length",
-          {ErrorObject{what},
-           ": the element is longer than its part of the bar. The argument of the curve must be its arc length."});
+      throw InvalidInput("reference_curve.arc_length", {ErrorObject{what},
+                                                        ": the distance of its ends exceeds its arc length. The "
+                                                        "argument of the reference curve must be its arc length."});
     double height = 0.0, width = 0.0;  // half height and half width
     if (auto const* r = std::get_if<Rectangle>(&bar_.section))
       height = 0.5 * r->height, width = 0.5 * r->width;
@@ -289,10 +288,11 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
                    z = ref.determinant(xi, 0.0, width) - middle;
       double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
       if (!(middle - drop > 0.0))
-        throw InvalidInput("reference_curve.element",
-                           {ErrorObject{what},
-                            ": the element is turned inside out in the reference, because the curve bends too sharply "
-                            "for the section or for one element. Use more elements, or another curve."});
+        throw InvalidInput(
+            "reference_curve.element",
+            {ErrorObject{what},
+             ": the element is turned inside out in the reference configuration, because the curve bends too sharply "
+             "for the section or for one element. Use more elements, or another curve."});
     }
   }
 
@@ -371,9 +371,9 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
     : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
   std::string const name = Elastic::name;
   require_elements(n, name);
-  require_positive(constants_.rotary_inertia, name, ": the rotary inertia of the bar, the only mass of r_y,");
+  require_positive(constants_.rotary_inertia, name, ": the rotary inertia of the bar, the mass of the gradient r_y,");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
-                   name + ": the rotary inertia of the bar about y, the only mass of r_z,");
+                   name + ": the rotary inertia of the bar about y, the mass of the gradient r_z,");
   require_polar_inertia_of_points(constants_, name);
   Elastic::check(bar, constants_);
   l_ = bar.length / double(n);

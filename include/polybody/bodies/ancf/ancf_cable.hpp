@@ -300,8 +300,9 @@ AncfCable<Strain, axial_points, bending_points>::AncfCable(Bar const& bar, BarCo
       if (!(std::abs(off) < 0.1))
         throw InvalidInput(
             "reference_curve.arc_length",
-            {ErrorObject{"AncfCable"}, ": element ", e + 1, " of the reference curve is strained by ", ErrorValue{off},
-             ". Parametrise the curve by its arc length, from 0 to the bar's length, or use more elements."});
+            {ErrorObject{"AncfCable"}, ": element ", e + 1, ", counted from 1, has a strain of ", ErrorValue{off},
+             ", but the limit is 0.1. Parametrise the reference curve by its arc length, from 0 to the bar's length, "
+             "or use more elements."});
     }
     axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
   }

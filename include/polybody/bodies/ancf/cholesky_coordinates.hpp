@@ -56,11 +56,10 @@ class CholeskyCoordinates : public AddingCoordinates {
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {
     if (body_.coordinates() != n_)
-      throw InvalidInput("cholesky.quaternions",
-                         {ErrorObject{"CholeskyCoordinates"}, ": the body has ", ErrorValue{body_.coordinates()},
-                          " coordinates, but ", n_,
-                          " velocities, so it has rotation coordinates. Use a body of nodal positions, such as "
-                          "AncfCable."});
+      throw InvalidInput("cholesky.quaternions", {ErrorObject{"CholeskyCoordinates"}, ": the body has ",
+                                                  ErrorValue{body_.coordinates()}, " coordinates, but ", n_,
+                                                  " velocities, so it has rotation coordinates. Use a body whose "
+                                                  "coordinates are nodal positions, such as AncfCable."});
     factor();
   }
 

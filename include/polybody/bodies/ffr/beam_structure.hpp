@@ -234,7 +234,7 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
     throw InvalidInput(
         "structure.beam",
         {ErrorObject{"Structure"}, ": at least one bar and one number of elements per bar are needed, but there are ",
-         bars.size(), " bars and ", elements.size(), " numbers."});
+         bars.size(), " bars and ", elements.size(), " numbers of elements."});
   Structure s;
   double longest = 0.0;
   for (Bar const& bar : bars) longest = std::max(longest, double(bar.length));

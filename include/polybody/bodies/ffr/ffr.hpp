@@ -115,9 +115,9 @@ class Ffr {
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput("ffr.point_size",
-                         {ErrorObject{"Ffr"}, ": S and R of a point must be 3×", deformations(), ", but are 3×",
-                          p.S.cols(), " and 3×", p.R.cols(), ". Their columns are the deformation coordinates."});
+      throw InvalidInput("ffr.point_size", {ErrorObject{"Ffr"}, ": S and R of a point must be 3×", deformations(),
+                                            ", but are 3×", p.S.cols(), " and 3×", p.R.cols(),
+                                            ". Each needs one column for each deformation coordinate."});
     return p;
   }
 
@@ -378,9 +378,9 @@ class Ffr {
   }
   FfrPoints const& made() const {
     if (!points_)
-      throw InvalidInput("ffr.integrals_only",
-                         {ErrorObject{"Ffr"},
-                          ": this body consists of integrals only. Give the point as a Point with its matrices S, R."});
+      throw InvalidInput("ffr.integrals_only", {ErrorObject{"Ffr"},
+                                                ": this body was made from integrals only, so it has no nodes. Give "
+                                                "the point as a Point with its matrices S, R."});
     return *points_;
   }
 

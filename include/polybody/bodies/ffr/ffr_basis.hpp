@@ -239,8 +239,9 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
     return shapes;
   }
   if (s.per_node != 6)
-    throw InvalidInput(
-        "ffr.frame", {ErrorObject{"Ffr"}, ": nodes without rotations do not fix the frame. Use FfrFrame::mean_axes."});
+    throw InvalidInput("ffr.frame", {ErrorObject{"Ffr"},
+                                     ": this FfrFrame needs nodes with rotations, but the nodes have displacements "
+                                     "only. Use FfrFrame::mean_axes."});
   Index const last = s.size() - 6;
   std::array<Index, 6> fixed = {0, 1, 2, 3, 4, 5};
   if (frame == FfrFrame::simply_supported) fixed = {0, 1, 2, 3, last + 1, last + 2};
@@ -251,10 +252,9 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   }
   Eigen::FullPivLU<MatX> const solver(of_rigid);
   if (!solver.isInvertible())
-    throw InvalidInput("ffr.frame",
-                       {ErrorObject{"Ffr"},
-                        ": FfrFrame::simply_supported needs a last node at a distance along x from the first, "
-                        "but these nodes do not hold the structure. Use another FfrFrame."});
+    throw InvalidInput("ffr.frame", {ErrorObject{"Ffr"},
+                                     ": FfrFrame::simply_supported needs a first and a last node at different x, but "
+                                     "supports at these two nodes do not prevent rigid motion. Use another FfrFrame."});
   shapes -= rigid * solver.solve(of_frame);
   for (Index const i : fixed) shapes.row(i).setZero();
   return shapes;
@@ -286,9 +286,9 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
                                         ": Craig-Bampton needs at least one boundary node and each node once, but has ",
                                         boundary.size(), " boundary nodes, of which ", different, " are different."});
   if (!mean_axes && s.per_node != 6)
-    throw InvalidInput("ffr.boundary",
-                       {ErrorObject{"Ffr"},
-                        ": boundary nodes without rotations do not fix the frame. Set mean_axes of craig_bampton."});
+    throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"},
+                                        ": without mean_axes, the boundary nodes must have rotations, but they have "
+                                        "displacements only. Set mean_axes of craig_bampton to true."});
   ReferenceConditions everywhere = ReferenceConditions::none();
   if (in_plane) everywhere.restrict_to_plane();
   std::vector<Index> const all = everywhere.free_coordinates(s);

@@ -28,8 +28,8 @@ Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index 
   if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" ||
       (field != "real" && field != "integer") || (kind != "general" && kind != "symmetric"))
     lines.fail(
-        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix in one "
-        "of these formats");
+        "the first line must be '%%MatrixMarket matrix coordinate real general' or '%%MatrixMarket matrix coordinate "
+        "real symmetric'; write the matrix in one of these formats");
   Index rows = 0, columns = 0, count = 0;
   std::string const sizes = "the number of rows, of columns and of entries";
   if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);

@@ -154,10 +154,10 @@ void require_units_of_solids(double speed, double fastest) {
   if (!(speed > fastest) || !std::isfinite(speed)) return;
   throw InvalidInput(
       "structure.units",
-      {ErrorObject{"Structure"}, ": nodes, masses and stiffness have different units: waves would travel at ",
-       ErrorValue{speed}, " m/s, above ", fastest,
-       " m/s; diamond has 1.8e4. Give nodes in metres, masses in kilograms and the stiffness in N/m (nodes in "
-       "millimetres make waves 1000 times as fast), or a larger fastest_wave for a material with faster waves."});
+      {ErrorObject{"Structure"}, ": nodes, masses and stiffness have inconsistent units: waves would travel at ",
+       ErrorValue{speed}, " m/s, but the limit is ", fastest,
+       " m/s (waves in diamond: 1.8e4 m/s). Give nodes in metres, masses in kilograms and the stiffness in N/m; nodes "
+       "in millimetres make waves 1000 times as fast. For a material with faster waves, increase fastest_wave."});
 }
 
 /// Checks that the moments of mass are finite.

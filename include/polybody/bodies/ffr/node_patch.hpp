@@ -48,7 +48,7 @@ class NodePatch {
       throw InvalidInput(
           "structure.patch",
           {ErrorObject{who}, ": a patch needs at least three nodes that are not in line, but this patch has ",
-           ErrorValue{nodes_.size()}, nodes_.size() < 3 ? "" : " in line", ". Enlarge the patch."});
+           ErrorValue{nodes_.size()}, nodes_.size() < 3 ? "" : " nodes in line", ". Enlarge the patch."});
     by_moment_ = spread.inverse();
   }
 

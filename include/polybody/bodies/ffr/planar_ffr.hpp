@@ -65,8 +65,10 @@ class Ffr : public AddingCoordinates {
             options) {
     for (Index i = 0; i < shapes.rows(); ++i)
       if (int const c = int(i) % structure.per_node; c >= 2 && c < 5 && !shapes.row(i).isZero(0.0))
-        throw InvalidInput("ffr.out_of_plane", {ErrorObject{"planar::Ffr"},
-                                                ": the shapes of the basis leave the plane. Build it with in_plane."});
+        throw InvalidInput(
+            "ffr.out_of_plane",
+            {ErrorObject{"planar::Ffr"},
+             ": the shapes of the basis move nodes out of the plane. Make the basis with in_plane = true."});
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// Body from integrals that the user computes.
@@ -101,9 +103,9 @@ class Ffr : public AddingCoordinates {
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput("ffr.point_size",
-                         {ErrorObject{"planar::Ffr"}, ": S and R of a point must be 3×", deformations(), ", but are 3×",
-                          p.S.cols(), " and 3×", p.R.cols(), ". Their columns are the deformation coordinates."});
+      throw InvalidInput("ffr.point_size", {ErrorObject{"planar::Ffr"}, ": S and R of a point must be 3×",
+                                            deformations(), ", but are 3×", p.S.cols(), " and 3×", p.R.cols(),
+                                            ". Each needs one column for each deformation coordinate."});
     return p;
   }
 
@@ -382,9 +384,9 @@ class Ffr : public AddingCoordinates {
 
   FfrPoints const& made() const {
     if (!points_)
-      throw InvalidInput("ffr.integrals_only",
-                         {ErrorObject{"planar::Ffr"},
-                          ": this body consists of integrals only. Give the point as a Point with its matrices S, R."});
+      throw InvalidInput("ffr.integrals_only", {ErrorObject{"planar::Ffr"},
+                                                ": this body was made from integrals only, so it has no nodes. Give "
+                                                "the point as a Point with its matrices S, R."});
     return *points_;
   }
 

@@ -343,12 +343,14 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
       detail::set_carried_section<double>(
           q, n, e, interpolation_.between(detail::turned<double>(q, e), detail::turned<double>(q, e + 1)));
   char const* const advice =
-      ". The reference curve's parameter must be its arc length; use more elements on a closed curve.";
+      ", but the chord must be positive and no longer than the arc. The argument of the reference curve must be its "
+      "arc length. Use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {
     double const chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
     if (!(chord > 1e-6 * l_ && chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput("reference_curve.arc_length", {ErrorObject{"Lrvf"}, ": element ", double(e), " of arc length ",
-                                                        l_, " m has a chord of ", ErrorValue{chord}, " m", advice});
+      throw InvalidInput("reference_curve.arc_length",
+                         {ErrorObject{"Lrvf"}, ": element ", double(e), ", counted from 0, of arc length ", l_,
+                          " m has a chord of ", ErrorValue{chord}, " m", advice});
     elastic_.set_free(e, std::span<double const>(q), chord);
   }
 }

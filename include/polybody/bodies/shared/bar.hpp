@@ -238,9 +238,10 @@ template <class = void>  // compiled only if used
 void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
   Vec3 const i = rotary_inertias(c);
   if (std::abs(i[0] - (i[1] + i[2])) > 1e-9 * (i[1] + i[2]))
-    throw InvalidInput("bar.polar_inertia", {ErrorObject{what}, ": the polar inertia is ", ErrorValue{i[0]},
-                                             " kg m, but its material points have ", "Iρ_y + Iρ_z = ", i[1] + i[2],
-                                             " kg m. Omit it, or use Lrvf or Rigid, whose sections are rigid."});
+    throw InvalidInput("bar.polar_inertia",
+                       {ErrorObject{what}, ": the polar inertia is ", ErrorValue{i[0]},
+                        " kg m, but the material points of this body have ", "Iρ_y + Iρ_z = ", i[1] + i[2],
+                        " kg m. Omit polar_inertia, or use Lrvf or Rigid, whose sections are rigid."});
 }
 
 /// Checks the number n of elements of a bar.

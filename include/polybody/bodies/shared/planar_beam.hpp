@@ -342,8 +342,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
       if (!(std::abs(off) < 0.1))
         throw InvalidInput(
             "reference_curve.arc_length",
-            {ErrorObject{Theory::name}, ": element ", e + 1, " of the curve is strained by ", ErrorValue{off},
-             ". Parametrise the curve by its arc length, from 0 to the bar's length, or use more elements."});
+            {ErrorObject{Theory::name}, ": element ", e + 1, ", counted from 1, has a strain of ", ErrorValue{off},
+             ", but the limit is 0.1. Parametrise the reference curve by its arc length, from 0 to the bar's length, "
+             "or use more elements."});
     }
   }
 
