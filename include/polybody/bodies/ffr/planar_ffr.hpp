@@ -14,7 +14,7 @@ namespace polybody::planar {
 /// angle θ. With c, J, H of planar_ffr_integrals.hpp, C = c_q, and e× a rotation by a right angle, all in the axes of
 /// the frame,
 ///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
-///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        because H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
+///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇ − H˙ q̇,   H˙ q̇ = q̇ᵀ coupling_by q̇ (0 without stiffening),
 ///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
 /// The coordinates are x, y of the origin of the frame, its angle θ, and q (n). The generalised velocities are their
 /// rates. A marker rotates with its section.
@@ -205,6 +205,7 @@ class Ffr : public AddingCoordinates {
     out[0] = -(c * w[0] - s * w[1]);
     out[1] = -(s * w[0] + c * w[1]);
     out[2] = -(j_rate * omega);
+    if (i_.stiffens() && pushes) out[2] -= detail::quadratic<T>(i_.coupling_by, xd, xd);
   }
 
   template <class = void>
@@ -238,6 +239,7 @@ class Ffr : public AddingCoordinates {
         turned(3 + i, j == 0 ? by_rate : -by_place, j == 0 ? by_place : by_rate);
       }
       k(2, 3 + i) += moving * omega * (ck * bent + cd * slope);
+      if (i_.stiffens()) k(2, 3 + i) += pushes * cd * (left + right);
       k(3 + i, 2) -= cd * omega * terms_.centrifugal_slope(slope, i_.inertia_by[i]);
       if (terms_.coriolis) k(3 + i, 2) += cd * (right - left);
     }

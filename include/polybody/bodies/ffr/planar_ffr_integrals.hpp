@@ -52,7 +52,7 @@ struct FfrIntegrals {
     return x;
   }
   /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass and mass matrix.
-  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric, and for a moment of
+  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric without stiffening, and for a moment of
   /// inertia that is not positive.
   template <class = void>
   void check(std::string const& what) const {
@@ -76,10 +76,10 @@ struct FfrIntegrals {
         largest = std::max(largest, std::abs(coupling_by(i, j)));
         odd = std::max(odd, std::abs(coupling_by(i, j) + coupling_by(j, i)));
       }
-    if (odd > 1e-9 * largest)
+    if (!stiffens() && odd > 1e-9 * largest)
       throw InvalidInput("ffr.not_skew", {ErrorObject{what},
-                                          ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew-symmetric, but the "
-                                          "sum with its transpose has an entry of ",
+                                          ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew-symmetric without "
+                                          "geometric stiffening, but the sum with its transpose has an entry of ",
                                           ErrorValue{odd}, "."});
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
