@@ -52,8 +52,8 @@ struct FfrIntegrals {
     return x;
   }
   /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass and mass matrix.
-  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric without stiffening, and for a moment of
-  /// inertia that is not positive.
+  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric without stiffening, and
+  /// for a moment of inertia that is not positive.
   template <class = void>
   void check(std::string const& what) const {
     polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());
