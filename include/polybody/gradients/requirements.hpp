@@ -43,10 +43,11 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                       Index(v.breakpoints().size())};
   };
   if (sizes(other) != sizes(model))
-    throw InvalidInput("derivative.sizes", {ErrorObject{who}, ": for another value of \"", p.name,
-                                            "\" the factory makes a model of a different size. Parameters may change "
-                                            "values, but not the numbers of bodies, joints, forces, outputs, events "
-                                            "and breakpoints."});
+    throw InvalidInput("derivative.sizes",
+                       {ErrorObject{who}, ": for another value of \"", p.name,
+                        "\" the function that makes the model returns a different size. Parameters may change "
+                        "values, but not the numbers of bodies, joints, forces, outputs, events "
+                        "and breakpoints."});
   Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
   if (here && there.reduced->full_velocity != here.reduced->full_velocity)
     throw InvalidInput("derivative.elimination",

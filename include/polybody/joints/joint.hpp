@@ -42,12 +42,12 @@ struct GeometryRefusal {
       "A joint geometry needs triad() const, which returns a Mat3: the joint's axes at the reference configuration, in "
       "world axes.");
   static_assert(constraint_equations<G>() >= 1 && constraint_equations<G>() <= 6,
-                "A joint geometry needs a list of 1 to 6 constraint equations, such as using Equations = "
-                "EquationList<Coincident>; or a static constant int rows, from 1 to 6, with its own functions.");
+                "A joint geometry needs a list of 1 to 6 constraint equations, for example `using Equations = "
+                "EquationList<Coincident>`, or its own functions and a static constant `int rows` from 1 to 6.");
   static_assert(
       HasEquationList<G> || requires {
         { G::needs } -> std::convertible_to<MarkerKind>;
-      }, "A joint geometry without a list of constraint equations needs a static constant: MarkerKind needs.");
+      }, "A joint geometry without a list of constraint equations needs the static constant `MarkerKind needs`.");
   static_assert(HasEquationList<G> || HasOwnConstraintFunction<G>,
                 "A joint geometry needs constraint_function<T>(a, b, t) const, which returns ConstraintTerms<rows, T>, "
                 "or a list of constraint equations.");
@@ -70,9 +70,10 @@ struct PolicyRefusal {
   static_assert(!(ConstrainingPolicy<P> && CompliantPolicy<P>),
                 "A policy must either add constraint equations (adds_constraints) or replace them by a force "
                 "(multiplier), not both.");
-  static_assert(ConstrainingPolicy<P> || given != 0,
-                "A policy needs a static constant adds_constraints = true; or, if it replaces constraint equations by "
-                "a force, check, multiplier, slope and potential.");
+  static_assert(
+      ConstrainingPolicy<P> || given != 0,
+      "A policy needs a static constant adds_constraints = true. A compliant policy, which replaces constraint "
+      "equations by a force, needs the members check, multiplier, slope and potential instead.");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 1) != 0,
                 "A compliant policy needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,

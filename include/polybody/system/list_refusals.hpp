@@ -125,7 +125,7 @@ struct ForceRefusal {
       requires {
         { F::needs } -> std::convertible_to<MarkerKind>;
         { F::is_load } -> std::convertible_to<bool>;
-      }, "A force element needs static constants: MarkerKind needs and bool is_load.");
+      }, "A force element needs two static constants, `MarkerKind needs` and `bool is_load`.");
   static_assert(
       WrenchFunction<F> || states_of<F>() > 0,
       "A force element needs wrenches<T>(std::array<Frame<T>, markers> frames, double t) const, which returns "

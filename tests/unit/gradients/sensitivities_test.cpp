@@ -168,7 +168,7 @@ TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
     return Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 1e-2}};
   };
   EXPECT_TRUE(has(said(grows, {{"elements [1]", 3.0}}),
-                  "another value of \"elements [1]\" the factory makes a model of a different size"));
+                  "another value of \"elements [1]\" the function that makes the model returns a different size"));
 }
 
 }  // namespace sensitivities_test
