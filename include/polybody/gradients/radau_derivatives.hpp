@@ -90,7 +90,7 @@ class RadauLinearisedStep {
   static constexpr int most_corrections = 60;
 
   /// Sets the start and the values of the stages. The derivatives of v̇ and λ at the start are the initial guess for
-  /// the stages.
+  /// the derivatives of v̇ and λ of the stages.
   void begin(StepTaken const& step, std::span<State* const> directions) {
     detail::lift(step.before.q, directions, &State::q, duals_.q0);
     detail::lift(step.before.v, directions, &State::v, duals_.v0);
