@@ -14,8 +14,9 @@
 
 namespace polybody {
 
-/// Error of a program that uses a study wrongly: the function of a point reads a column that does not exist, or returns
-/// the wrong number of outputs. The error ends the study and is not recorded as a failure of the point.
+/// Error of a program that uses a study wrongly. For example, the function of a point reads a column that does not
+/// exist, or returns the wrong number of outputs. The error ends the study and is not recorded as a failure of the
+/// point.
 class StudyUsageError : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
