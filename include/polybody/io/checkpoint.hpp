@@ -2,7 +2,7 @@
 /// \file
 /// Writer and reader of checkpoints, which are snapshots of runs in files. A file consists of "polybody", 0x01020304
 /// (byte order), version, length of the content, content, and the `checksum` of all preceding bytes. Numbers have the
-/// representation of the machine; integers are int64.
+/// representation of the machine. Integers of the content are int64.
 
 #include <cstring>
 
