@@ -2,8 +2,8 @@
 /// \file
 /// Derivatives of the equations of motion r and the constraint equations Φ of a step with respect to parameters, at
 /// fixed unknowns, by differences of perturbed models. Parameters that affect no common equation are perturbed together
-/// in the same models. In the same way, one difference can yield several columns of a sparse Jacobian [Curtis, Powell &
-/// Reid 1974].
+/// in the same models. Columns of a sparse Jacobian can be differenced together in the same way [Curtis, Powell & Reid
+/// 1974].
 
 #include <algorithm>
 #include <array>

@@ -25,9 +25,9 @@
 namespace polybody {
 
 /// Derivatives of successive steps of Radau, also with respect to the step lengths. A state does not contain the stages
-/// of a step, so they are computed again. If Newton's method does not converge for a step, `Radau` uses stages longer
-/// than the step. The derivatives then belong to a step with stages of its own length; the difference has the order of
-/// the integration errors.
+/// of a step, so they are computed again. If Newton's method does not converge for a step of a model with constraint
+/// equations, `Radau` may compute stages over 1.25 times the length of the step. The derivatives then belong to a step
+/// with stages over the length of the step itself. The difference has the order of the integration errors.
 template <LinearSolver Solver = DefaultSolver>
 class RadauLinearisedStep {
  public:

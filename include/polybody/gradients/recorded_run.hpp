@@ -82,7 +82,7 @@ std::vector<std::size_t> acting_events(std::vector<Event> const& events, EventDe
 
 /// Treatment of events and breakpoints in a recorded run.
 enum class Interruptions {
-  handled,  ///< steps of constant length end at events and breakpoints; the integrator starts again there
+  handled,  ///< events and breakpoints end steps of a constant length early; the integrator starts again there
   refused   ///< breakpoints are refused; steps of known length are planned but not computed
 };
 
