@@ -136,7 +136,8 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Writes a checkpoint to the file `name`. When complete, the new file replaces an existing file with this name:
+/// Writes a checkpoint to the file `name`. When complete, the new file replaces an existing file with this name.
+/// Example:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// Another process continues the run with bitwise identical results:
 ///   auto run = resume(model, x, GeneralisedAlpha{}, options, read_checkpoint("out/run.checkpoint"));

@@ -104,8 +104,8 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
 
 }  // namespace detail
 
-/// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; an existing PNG then
-/// remains unchanged.
+/// Result of `write_panels` and `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; an
+/// existing PNG then remains unchanged.
 enum class DrawResult { png, script_only };
 
 namespace detail {
