@@ -15,8 +15,7 @@ namespace polybody::detail {
 // evaluated together. It solves
 //   B x = b, with B = M⁻¹ A and b = M⁻¹ r, where M is a factorised matrix close to A.
 // After n products, x is the combination of b, B b, … Bⁿ⁻¹ b with the least residual. If M = A, one product is enough.
-// If M lacks a few blocks of A, a few more products than missing blocks are enough, even if iterative refinement with
-// M diverges.
+// If M differs from A by a matrix of rank r, r + 1 products are enough, even if iterative refinement with M diverges.
 
 /// Iterative solution of one system of linear equations. The memory of the vectors is reused in the next solution.
 class Gmres {

@@ -4,11 +4,11 @@
 /// breakpoints and events may depend on the parameters.
 ///
 /// A step has the length h and the start time t₀. With the derivatives x̄ and t̄ of a result J with respect to the
-/// state x and the time at its end,
+/// state x and the time at the end of the step,
 ///   ∂J/∂h = x̄ᵀ ∂x/∂h + t̄.
 /// If the step ends at a breakpoint or at the end of the run, at time T, then dh = dT − dt₀. If the step ends at an
 /// event g = 0, then
-///   dh = −(∂g/∂p dp + ∂g/∂x dx)/ġ, with the derivatives of g at fixed h.
+///   dh = −(∂g/∂p dp + ∂g/∂x₀ dx₀)/ġ, with the state x₀ and time at the start, and derivatives of g at fixed h.
 /// The backward sweep over such a step therefore also computes the adjoint variables of g, with ∂g/∂h = ġ. The sweep
 /// adds −(∂J/∂h)/ġ times the adjoint variables and the parameter derivatives of g to those of J. This is the transposed
 /// saltation relation of the discrete run. The adjoint of a restart is computed by differences of the map from the

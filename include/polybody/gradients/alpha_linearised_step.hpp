@@ -30,8 +30,8 @@ namespace polybody {
 // mean |E z|²). The value of one probe replaces the mean. The weights are recent sizes of the unknowns, so that a
 // probe hardly changes unknowns that the directions do not change: a planar motion remains planar.
 
-/// Error estimate of corrections to the changes of a₁ (nv) and λ₁ (rows). Directions are scaled to the size of their
-/// parameters.
+/// Error estimate of corrections to the changes of a₁ (nv) and λ₁ (rows). The change along a direction is multiplied by
+/// the size of the parameter of this direction.
 class CorrectionErrorEstimate {
  public:
   /// Norms of the two parts of a change of the unknowns.
@@ -53,8 +53,8 @@ class CorrectionErrorEstimate {
   void forget() { known_ = false; }
   /// Returns true if an estimate exists.
   bool known() const { return known_; }
-  /// Increases the weights to at least `scale` |y|, with the changes y (nv + rows) in a direction and the size `scale`
-  /// of its parameter.
+  /// Increases the weights to at least `scale` |y|. y (nv + rows) are the changes of the unknowns along a direction,
+  /// and `scale` is the size of the parameter of this direction.
   void add(VecX const& y, double scale) { weights_ = weights_.cwiseMax(scale * y.cwiseAbs()); }
   /// Draws a random probe z (nv + rows). Returns false if all weights are zero.
   bool draw(VecX& z) {
@@ -135,9 +135,9 @@ class AlphaLinearisedStep {
   }
 
   /// Replaces derivatives of the state before the step, along up to `max_directions` directions, by derivatives of the
-  /// state after the step. An unused lane of the dual numbers may evaluate the probe of the error estimate. Returns an
-  /// upper estimate of the next correction. The estimate is relative to the derivatives of a and λ, or to a and λ
-  /// divided by the parameter's scale if these are larger.
+  /// state after the step. An unused lane of the dual numbers may evaluate the probe of the error estimate. Returns the
+  /// last correction, or the estimate of the next correction if it is smaller. The correction is relative to the
+  /// derivatives of a and λ, or to a and λ divided by the parameter's scale if these are larger.
   /// \throws SingularMatrix in a singular configuration.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
     std::size_t const n = directions.size();

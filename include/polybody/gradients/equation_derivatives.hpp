@@ -1,8 +1,9 @@
 #pragma once
 /// \file
 /// Derivatives of the equations of motion r and the constraint equations Φ of a step with respect to parameters, at
-/// fixed unknowns, by differences of perturbed models. Parameters that affect no common equation are perturbed in the
-/// same models, as columns of a sparse Jacobian are in one difference [Curtis, Powell & Reid 1974].
+/// fixed unknowns, by differences of perturbed models. Parameters that affect no common equation are perturbed together
+/// in the same models. Columns of a sparse Jacobian can be differenced together in the same way [Curtis, Powell & Reid
+/// 1974].
 
 #include <algorithm>
 #include <array>
@@ -19,13 +20,14 @@
 
 namespace polybody::detail {
 
-// Check that each equation depends only on the parameter whose `affects` names its object, if parameters are perturbed
-// together.
+// Check of parameters that are perturbed together, in one group of models. Each parameter is a member of the group. An
+// equation may depend on a member only if the `affects` of this member names the object of the equation.
 
-/// Difference points (`FourPoints`) of the four models of a group, for one member.
+/// Indices of the difference points (`FourPoints`) of one member, for each of the four models of its group.
 using MemberOrder = std::array<std::uint8_t, 4>;
 
-/// Orders of the four difference points, one for each member. No order equals another one or its mirror image.
+/// Orders of the four difference points, for up to twelve members. No order equals another one, or another one with the
+/// signs of all points reversed.
 inline constexpr std::array<MemberOrder, 12> member_orders{{{0, 1, 2, 3},
                                                             {0, 1, 3, 2},
                                                             {0, 2, 1, 3},
@@ -38,13 +40,13 @@ inline constexpr std::array<MemberOrder, 12> member_orders{{{0, 1, 2, 3},
                                                             {2, 1, 3, 0},
                                                             {2, 3, 0, 1},
                                                             {2, 3, 1, 0}}};
-/// Order of member r in a set of models. Sets differ in `of_orders`, a power of the number of orders n: member r has
-/// the order number r/`of_orders` modulo n.
+/// Order of member r in one of the sets of models of its group. The order has the number r/`of_orders` modulo n, with
+/// the number n of all orders. `of_orders` is 1, n, n², … for the successive sets.
 constexpr MemberOrder const& order_of_member(std::size_t r, std::size_t of_orders) {
   return member_orders[r / of_orders % member_orders.size()];
 }
 
-/// Changes of equations that may be due to round-off.
+/// Largest changes of equations that may be due to round-off.
 struct RoundingOfEquations {
   double balance = -1.0, rows = 0.0;  ///< of equations of motion (negative if unknown), and of constraint equations
 };
@@ -59,11 +61,11 @@ double size_of_rows(X const& x) {
 /// Values of an equation at the four difference points of its own parameter.
 using ValuesAtPlaces = std::array<double, 4>;
 
-/// Check that each equation depends only on the parameter that names it, for a group of parameters (members) that are
-/// perturbed together in four models. The owner of an equation is the member whose `affects` names its object. An
-/// equation without an owner must not change; any other equation must change with its owner only. Each member has
-/// another order of the difference points, so the contribution of a second member is not linear in the difference
-/// points of the owner. Curvature of an equation has the same effect, so a deviation does not prove a dependence.
+/// Check of a group of parameters (members) that are perturbed together in four models. The owner of an equation is the
+/// member whose `affects` names the object of the equation. An equation without an owner must not change; any other
+/// equation must change with its owner only. Each member has another order of the difference points, so the
+/// contribution of a second member is not linear in the difference points of the owner. Curvature of an equation has
+/// the same effect, so a deviation does not prove a dependence.
 class SharedEquations {
  public:
   static constexpr std::size_t nobody = std::size_t(-1);  ///< owner of an equation that has no owner
@@ -86,7 +88,8 @@ class SharedEquations {
   /// Begins another evaluation. Returns its number.
   std::size_t begin() { return evaluations_++; }
 
-  /// True if the change of equation i indicates a second parameter, by more than `rounding`.
+  /// True if equation i changes by more than its owner, round-off (`rounding`) and the tolerance of the equation
+  /// explain. False while the check of the equation is paused.
   bool is_doubtful(std::size_t i, ValuesAtPlaces const& f, double rounding) const {
     auto const [left, change] = unexplained(i, f);
     return left > rounding + doubts_[i].tolerance * change && evaluations_ >= doubts_[i].next;

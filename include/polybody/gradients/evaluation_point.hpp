@@ -2,15 +2,17 @@
 /// \file
 /// Linear equations that Runge–Kutta steps solve at each evaluation point:
 ///   M a + Gᵀλ = force f,   G (a + also) + bias γ + rate Φ̇ + position Φ = 0.
-/// Accelerations have force = bias = 1 and rate = position = 0. A projection has force = bias = 0. With
-/// position = 1/h², it changes the coordinates by δ = h² a; with rate = 1/h, it changes the velocities by h a. The
-/// unknowns a of a projection thus have the size of accelerations and do not lose digits when f is subtracted.
+/// The factors force, bias, rate and position are those of `EquationTerms`. For accelerations, force = bias = 1, and
+/// rate and position are zero or the coefficients of Baumgarte's feedback. For a projection, force = bias = 0. With
+/// position = 1/h², the projection changes the coordinates by δ = h² a; with rate = 1/h, it changes the velocities by h
+/// a. The unknowns a of a projection thus have the size of accelerations and do not lose digits when f is subtracted.
 
 #include <polybody/gradients/alpha_linearised_step.hpp>
 
 namespace polybody {
 
-/// Factors of the terms in the equations of an evaluation point. The default values are those of accelerations.
+/// Factors of the terms in the equations of an evaluation point. The default values are those of accelerations without
+/// Baumgarte's feedback.
 struct EquationTerms {
   double force = 1.0;     ///< factor of f: one, or zero
   double bias = 1.0;      ///< factor of γ

@@ -16,8 +16,9 @@ struct SensitivityResult {
   std::vector<VecX> values;                      ///< (n) outputs
   /// (n) Derivatives (outputs × parameters) of `values` at `times`, which may change with the parameters.
   std::vector<MatX> derivatives;
-  /// (n) Derivatives (parameters) of `times` [s / unit of the parameter]: nonzero after an event, and at a breakpoint
-  /// that depends on a parameter. If a terminal event ends the run, the last one is that of the event.
+  /// (n) Derivatives (parameters) of `times` [s / unit of the parameter]. They are nonzero if the start, a step length,
+  /// a breakpoint, an event or the end time depends on a parameter. If a terminal event ends the run, the last
+  /// derivative is that of the event time.
   std::vector<VecX> time_derivatives;
   double left = 0.0;  ///< largest relative change in the last correction of a step
   RunReport run;      ///< report of the run itself

@@ -9,12 +9,12 @@
 ///     GradientResult const g = gradient(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
 ///     g.derivatives[0];  // dJ/dp of the first parameter
 ///
-/// A forward run is followed by a backward sweep from its end, with `AlphaStepAdjoint` for each step.
-/// `AdjointEventHandler` performs the sweep over breakpoints and events. The states of the run are stored in snapshots
-/// or computed again (`reverse_steps`). A factory makes models from parameters. The equations of these models are
-/// differenced at fixed unknowns, as in `sensitivities`. Parameters that affect no common equation share these
-/// differences (`Parameter::affects`). All other costs of a step are independent of the number of parameters. Each step
-/// begins with a new factorisation, so that repeated steps are bitwise identical.
+/// A forward run is followed by a backward sweep from its end, with the adjoint of each step (`AlphaStepAdjoint` for
+/// the generalised-α family). `AdjointEventHandler` performs the sweep over breakpoints and events. The states of the
+/// run are stored in snapshots or computed again (`reverse_steps`). A factory makes models from parameters. The
+/// equations of these models are differenced at fixed unknowns, as in `sensitivities`. Parameters that affect no common
+/// equation share these differences (`Parameter::affects`). All other costs of a step are independent of the number of
+/// parameters. Each step begins with a new factorisation, so that repeated steps are bitwise identical.
 
 #include <span>
 

@@ -105,7 +105,7 @@ struct GradientResult {
   double value = 0.0;                   ///< J, in the objective's unit
   VecX derivatives;                     ///< (parameters) dJ/dp [unit of J / unit of p]
   double left = 0.0;                    ///< largest relative change of adjoint multipliers in the last correction
-  CheckpointingReport reversal;         ///< number of steps, repeated steps and snapshots
+  CheckpointingReport reversal;         ///< numbers of steps, computed steps and snapshots
   double snapshot_size = 0.0;           ///< memory of one snapshot [bytes]
   RunReport run;                        ///< report of the forward run
 };

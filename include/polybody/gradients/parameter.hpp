@@ -17,9 +17,9 @@ struct Parameter {
   std::string name;    ///< name with unit
   double value = 0.0;  ///< value at which derivatives are computed, in the unit given in `name`
   double scale = 0.0;  ///< change that alters results by about their own size, in that unit; if zero, |value|
-  /// Names of the bodies, joints and forces with equations that depend on the parameter; if empty, all equations may
-  /// depend on it. A length affects its body and the joints at its end. Parameters that affect no common equation are
-  /// differenced together, with four evaluations of the equations for all of them.
+  /// Names of the bodies, joints and forces that depend on the parameter. If the list is empty, all equations may
+  /// depend on the parameter. For example, the length of a rod affects the rod and the joint at its end. Parameters
+  /// that affect no common equation are differenced together, with four evaluations of the equations for all of them.
   std::vector<std::string> affects = {};
 
   /// The scale, or |value| if the scale is zero.

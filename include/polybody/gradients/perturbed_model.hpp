@@ -20,7 +20,7 @@ struct ScenarioSystem {
   using Scenario = S;
   using Model = decltype(S::model);
 
-  std::shared_ptr<S const> shared;  ///< the scenario, also for other objects that share it
+  std::shared_ptr<S const> shared;  ///< owner of the scenario, which other objects may share
   S const& scenario;
   System system;
   FullStates<Model> full_state;

@@ -281,7 +281,7 @@ class PerturbedModels {
   static constexpr double negligible = 1e-13;  // neglected change of a time, relative to a step
   // Largest distance of differences along the motion, relative to a step. The outer points, at twice this distance,
   // remain before the next breakpoint: a step that does not end at the breakpoint ends at least 1 % of its length
-  // before it.
+  // before this breakpoint.
   static constexpr double largest_part = 4e-3;
 
   struct Parts {

@@ -25,9 +25,9 @@
 namespace polybody {
 
 /// Derivatives of successive steps of Radau, also with respect to the step lengths. A state does not contain the stages
-/// of a step, so they are computed again. If Newton's method does not converge for a step, `Radau` uses stages longer
-/// than the step. The derivatives then belong to a step with stages of its own length; the difference has the order of
-/// the integration errors.
+/// of a step, so they are computed again. If Newton's method does not converge for a step of a model with constraint
+/// equations, `Radau` may compute stages over 1.25 times the length of the step. The derivatives then belong to a step
+/// with stages over the length of the step itself. The difference has the order of the integration errors.
 template <LinearSolver Solver = DefaultSolver>
 class RadauLinearisedStep {
  public:
@@ -90,7 +90,7 @@ class RadauLinearisedStep {
   static constexpr int most_corrections = 60;
 
   /// Sets the start and the values of the stages. The derivatives of v̇ and λ at the start are the initial guess for
-  /// the stages.
+  /// the derivatives of v̇ and λ of the stages.
   void begin(StepTaken const& step, std::span<State* const> directions) {
     detail::lift(step.before.q, directions, &State::q, duals_.q0);
     detail::lift(step.before.v, directions, &State::v, duals_.v0);

@@ -11,7 +11,8 @@ namespace polybody::detail {
 
 // Stages of a Radau step (integrators/radau.hpp) in any scalar type, for the derivatives of the step.
 
-/// Largest absolute value of the entries of a vector and, for dual numbers, of each of their derivatives.
+/// Largest absolute value of the entries of a vector. For dual numbers, each of the derivatives also has a largest
+/// absolute value.
 template <StateScalar T>
 struct LargestParts {
   double value = 0.0;
@@ -163,7 +164,7 @@ class RadauStageSolution {
     w.next += w.at.a;
   }
 
-  /// Writes the matrix of all stages: block (i, j) is
+  /// Writes the matrix of all stages. With δ_ij = 1 for i = j and δ_ij = 0 otherwise, block (i, j) is
   ///   δ_ij [M, Gᵀ; G, slack] + h a_ij [D; ∂Φ̈/∂v] + h² (A²)_ij [K; ∂Φ̈/∂q] at stage i.
   void write(double t, double h, BlockSink& sink) {
     System& s = places_->template system<double>();

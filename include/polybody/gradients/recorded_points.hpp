@@ -3,9 +3,9 @@
 /// Points of a recorded time step at which it solves linear equations K x = b with K = [M, Gᵀ; G, 0]. From
 ///   K δx = δb − δK x  follows  b̄ = μ = K⁻ᵀ x̄ = K⁻¹ x̄,
 /// where x̄ and b̄ are the derivatives of the objective function with respect to x and b. One function template
-/// computes the step with both scalar types. With doubles it solves the equations and factorises K at each point. With
-/// tape variables it passes through the same points in the same order. The backward sweep computes the multipliers μ of
-/// each point.
+/// computes the step in doubles and in tape variables. With doubles it solves the equations and factorises K at each
+/// point. With tape variables it passes through the same points in the same order. The backward sweep computes the
+/// multipliers μ of each point.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/solved_points.hpp>

@@ -80,9 +80,9 @@ std::vector<std::size_t> acting_events(std::vector<Event> const& events, EventDe
   return acting;
 }
 
-/// Recorded runs with events and breakpoints, or without.
+/// Treatment of events and breakpoints in a recorded run.
 enum class Interruptions {
-  handled,  ///< steps of constant length end at events and breakpoints; the integrator starts again there
+  handled,  ///< events and breakpoints end steps of a constant length early; the integrator starts again there
   refused   ///< breakpoints are refused; steps of known length are planned but not computed
 };
 
@@ -99,8 +99,9 @@ class RecordedRun {
         computes_(interrupted_ || adaptive),
         driver_(full.scenario.options, report, adaptive) {}
 
-  /// Records the run. \throws InvalidInput if the run has no step, or if an event coincides with a breakpoint or
-  /// another event; and the exceptions of `simulate`.
+  /// Records the run. \throws InvalidInput if the run has no step, or if an event coincides with a breakpoint, the end
+  /// of the run or another event, if an event value remains zero, or if the run has a breakpoint and breakpoints are
+  /// refused; and the exceptions of `simulate`.
   void record() {
     x_ = full_->first();
     driver_.plan_run(x_.t, full_->system.layout().breakpoints);

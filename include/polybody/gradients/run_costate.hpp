@@ -39,8 +39,9 @@ struct RunCostate {
   double pull_push(State const& before) { return StepHistory::pull_push(before, history, at.a); }
 };
 
-/// Derivative of a result of a state x and a length h along a direction, by differences. `move` adds e times the
-/// direction to the state and to the length. \param f f(y, length): the result; it may change the copy y of the state;
+/// Derivative, along a direction, of a result that depends on a state x and a length h, by differences. `move` adds e
+/// times the direction to the state and to the length. \param f f(y, length): the result; it may change the copy y of
+/// the state;
 /// \param e distance of the differences
 template <class Move, class F>
 double slope_along(State const& x, double h, double e, Move const& move, F const& f) {

@@ -6,11 +6,11 @@
 
 namespace polybody::detail {
 
-/// Derivative of the current state of a run with respect to a parameter or to the length of a step.
+/// Derivative of the current state of a run with respect to p, which is a parameter or the length of a step.
 struct RunSensitivity {
   State dx;         ///< derivative of the state; the history of `dx` contains the step lengths of the run itself
-  double dt = 0.0;  ///< derivative of the time [s]
-  VecX lengths;     ///< derivatives of the step lengths in the history [s]
+  double dt = 0.0;  ///< derivative of the time [s / unit of p]
+  VecX lengths;     ///< derivatives of the step lengths in the history [s / unit of p]
 };
 
 template <class = void>

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
 /// Linearised step and adjoint of a step of an explicit Runge–Kutta method (integrators/runge_kutta.hpp). Both are
-/// exact and need no iteration. A step is computed in any scalar type T: with k = (δ˙, v̇) of the stages
+/// exact and need no iteration. A step is computed in any scalar type T. With the rates δ˙_j and the accelerations v̇_j
+/// of the stages,
 ///   δ_i = h Σ a_ij δ˙_j,  v_i = v₀ + h Σ a_ij v̇_j,  q_i = q₀ ⊞ δ_i.
 /// Each v̇_i, each Gauss–Newton iteration of a projection and its correction of the velocities is a solution of linear
 /// equations. Dual numbers pass through the step for its linearised form (gradients/solved_points.hpp). For its adjoint

@@ -7,11 +7,11 @@
 ///     s.derivatives.back()(0, 0);   // derivative of output 0 with respect to parameter 0 at the end of the run
 ///
 /// The results are derivatives of the discrete run, that is of its computed values, not of the exact motion. The
-/// factory makes models for nearby parameter values. Only their equations at given unknowns are differenced
-/// (FourPoints: relative errors of 1e-12), never a run. Steps are differentiated exactly (`AlphaLinearisedStep`), also
-/// with respect to their lengths, since breakpoints and events end steps at times that depend on the parameters. Three
-/// maps from state to state are differenced: a start, an event action, and the start correction after a change of the
-/// step length.
+/// factory makes models for nearby parameter values. A run is never differenced. The differences (FourPoints: relative
+/// errors of 1e-12) are those of the equations at given unknowns, of outputs and event values, and of three maps from
+/// state to state: a start, an event action, and the start correction after a change of the step length. Steps are
+/// differentiated exactly (`AlphaLinearisedStep`), also with respect to their lengths, since breakpoints and events end
+/// steps at times that depend on the parameters.
 
 #include <polybody/gradients/forward_sensitivities.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
@@ -33,8 +33,8 @@ class AlphaSensitivities {
   [[gnu::cold]] explicit AlphaSensitivities(V& full)
       : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
 
-  /// Replaces the sensitivities in `columns` before a step by sensitivities at its end. Returns an upper estimate of
-  /// the next relative correction.
+  /// Replaces the sensitivities in `columns` before a step by sensitivities at its end. Returns the largest result of
+  /// `AlphaLinearisedStep::advance`.
   double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
     auto const& [before, after, h, searched] = step;
     V& spare = perturbed.itself();
@@ -154,7 +154,8 @@ concept ScenarioFactory = requires(F const make, std::span<double const> p) {
 /// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator integrator of the
 /// generalised-α family, without `stabilised`; RungeKutta4, DormandPrince or Radau. Step lengths of DormandPrince are
 /// constants, unless an event, a breakpoint or the end of the run ends the step. \throws InvalidInput for invalid
-/// parameters; if models of the factory differ in size; if an event only touches zero; if events or breakpoints
+/// parameters; if models of the factory differ in size; if an event only touches zero; if an event coincides with a
+/// breakpoint or the end of the run; if two events, two breakpoints, or a breakpoint and the start or end of the run
 /// coincide and a parameter separates them; if a parameter changes equations of an object outside its `affects`.
 /// \throws SingularMatrix in a singular configuration; and the exceptions of `simulate`.
 template <ScenarioFactory Make, class I>

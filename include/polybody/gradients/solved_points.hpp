@@ -4,8 +4,8 @@
 /// the solutions. From K x = b with K = [M, Gᵀ; G, 0],
 ///   K δx = δb − δK x.
 /// One pass of dual numbers through the equations at constant x evaluates the right-hand side. One function template
-/// computes the step in both scalar types. With doubles it solves the equations and factorises K at each point. With
-/// dual numbers it passes through the same points in the same order.
+/// computes the step in doubles and in dual numbers. With doubles it solves the equations and factorises K at each
+/// point. With dual numbers it passes through the same points in the same order.
 
 #include <memory>
 #include <span>

@@ -18,7 +18,7 @@ namespace polybody::detail {
 /// therefore smooth; the effect of the shift of time is subtracted afterwards.
 class TimeMap {
  public:
-  /// Time of the run that depends on the parameter, and the corresponding times of the four perturbed runs.
+  /// Start or breakpoint of the run, and the corresponding times of the four perturbed runs.
   struct Moving {
     double here;                                          ///< time of the run [s]
     std::array<double, FourPoints::places.size()> there;  ///< times of the perturbed runs [s]

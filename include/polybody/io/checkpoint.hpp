@@ -2,7 +2,7 @@
 /// \file
 /// Writer and reader of checkpoints, which are snapshots of runs in files. A file consists of "polybody", 0x01020304
 /// (byte order), version, length of the content, content, and the `checksum` of all preceding bytes. Numbers have the
-/// representation of the machine; integers are int64.
+/// representation of the machine. Integers of the content are int64.
 
 #include <cstring>
 
@@ -136,7 +136,8 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Writes a checkpoint to the file `name`. When complete, the new file replaces an existing file with this name:
+/// Writes a checkpoint to the file `name`. When complete, the new file replaces an existing file with this name.
+/// Example:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// Another process continues the run with bitwise identical results:
 ///   auto run = resume(model, x, GeneralisedAlpha{}, options, read_checkpoint("out/run.checkpoint"));

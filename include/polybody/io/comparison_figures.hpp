@@ -69,7 +69,7 @@ double own_span(Comparison const& c, std::size_t i) {
 }
 
 /// Reference span for differences of output i: the greater of its `own_span` and 1 % of the largest `own_span` of
-/// outputs with the same unit. The lower bound is used if output i is only round-off in the first run.
+/// outputs with the same unit. The second value applies if output i of the first run is only round-off.
 template <class = void>
 double measure_of(Comparison const& c, std::size_t i) {
   std::vector<std::string> const& names = c.runs.front().output_names;

@@ -127,9 +127,9 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
 
 /// Draws the histories of all runs as figures in `folder`:
 ///   `outputs`      each output and its difference from the first run, largest relative difference first
-///   `violations`   of positions, velocities and accelerations
-///   `joint_force`  largest joint force
-///   `energies`     kinetic, potential and total energy
+///   `violations`   constraint violations of positions, velocities and accelerations
+///   `joint_force`  force of the joint with the largest peak force
+///   `energies`     kinetic and potential energy, and change of the total energy since the start
 ///   `cost`         largest difference of each run from the first run, over the computing time
 ///
 /// A page has six panels; further pages are `outputs_2`, …. Each figure consists of .dat and .gp, and of .png if

@@ -44,20 +44,20 @@ FilmScalar speed_colours() {
 
 namespace detail {
 
-/// Motion of a part: origins and rotations of its frame, and deviations of its points. A deviation is relative to the
-/// point's position in the first frame of the film, in axes of the part's frame.
+/// Motion of a part: origin and rotation of the part's axes in each frame of the film, and deviations of its points. A
+/// deviation is the change of a point's position since the first frame of the film, in the part's axes.
 struct FilmPart {
   std::string name;
   std::size_t shape = 0;  ///< index of the shape in the scene
   bool rigid = false;
-  std::vector<Vec3> points = {};            ///< positions in axes of the part's frame, rounded to float32 [m]
+  std::vector<Vec3> points = {};            ///< positions in the first frame of the film, part's axes, as float32 [m]
   std::vector<float> places = {};           ///< origins, 3 numbers per frame [m]
   std::vector<std::int16_t> turns = {};     ///< quaternions, 4 numbers per frame
   std::vector<float> deviations = {};       ///< 3 numbers per point and frame [m]
   std::vector<std::vector<float>> scalars;  ///< for each scalar of the scene: 1 number per point and frame, or none
 };
 
-/// Shape of a part: points in axes of its frame, and the polygons through them.
+/// Shape of a part: points in the part's axes, and the polygons through them.
 struct FilmShape {
   std::vector<float> points;
   std::vector<int> corners, ends;

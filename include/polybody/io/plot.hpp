@@ -71,7 +71,7 @@ std::string gnuplot_text(std::string_view text) {
 
 /// Runs gnuplot, the file `program`, on `script` in the folder of the script. The gnuplot variable png contains the
 /// name of a temporary file, to which the script draws. This file then replaces the file `png`. Throws IoError with the
-/// script's name and gnuplot's message.
+/// script's name and gnuplot's message if gnuplot fails, and IoError if the picture cannot be renamed.
 template <class = void>
 void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
                  std::filesystem::path const& png) {
@@ -104,8 +104,8 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
 
 }  // namespace detail
 
-/// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; an existing PNG then
-/// remains unchanged.
+/// Result of `write_panels` and `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; an
+/// existing PNG then remains unchanged.
 enum class DrawResult { png, script_only };
 
 namespace detail {

@@ -10,8 +10,9 @@
 
 namespace polybody {
 
-/// Surface of polygons. The corners of polygon i are the entries [ends[i − 1], ends[i]) of `corners`, which are indices
-/// of `points`. The corners of a polygon are listed counter-clockwise as seen from outside.
+/// Surface of polygons. The corners of polygon i are the entries [ends[i − 1], ends[i]) of `corners`, with 0 instead of
+/// ends[−1]. These entries are indices of `points`. The corners of a polygon are listed counter-clockwise as seen from
+/// outside.
 struct Surface {
   std::vector<Vec3> points;  ///< positions of the points [m]
   std::vector<int> corners;  ///< indices of `points`

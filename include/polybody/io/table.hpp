@@ -42,8 +42,8 @@ struct Table {
 
 namespace detail {
 
-/// Index of the first character that is not a single quote, if a spreadsheet evaluates texts that begin with it as
-/// formulas (=, +, -, @); otherwise npos.
+/// Index of the first character that is not a single quote, if this character is =, +, - or @; otherwise npos.
+/// Spreadsheets evaluate a text that begins with one of these four characters as a formula.
 inline std::size_t formula_in(std::string_view text) {
   std::size_t const first = text.find_first_not_of('\'');
   bool const is_formula = first != text.npos && std::string_view("=+-@").find(text[first]) != std::string_view::npos;

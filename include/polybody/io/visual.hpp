@@ -66,7 +66,7 @@ class Visual {
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
-  /// Names of the invisible bodies, which have no shape, in the order of the model's types.
+  /// Names of the bodies without a shape, in the order of the body types of the model.
   template <class = void>
   std::vector<std::string> bodies_without_shape() const {
     std::vector<std::string> names;

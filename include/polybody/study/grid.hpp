@@ -92,7 +92,7 @@ double of_twelve_digits(double x) {
 namespace polybody {
 
 /// Equidistant values: `count` values from `first` to `last`. The intermediate values are rounded to twelve digits.
-/// \throws InvalidInput for less than two values, and ends that are not finite.
+/// \throws InvalidInput for fewer than two values, or for an end that is not finite.
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {
   if (count < 2 || !std::isfinite(first) || !std::isfinite(last))
@@ -106,7 +106,7 @@ std::vector<double> linear(double first, double last, std::size_t count) {
 }
 
 /// Values with equal ratios (a geometric sequence): `count` values from `first` to `last`.
-/// \throws InvalidInput for ends that are not positive.
+/// \throws InvalidInput for an end that is not positive, and like `linear`.
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Studies distributed over the ranks of MPI: `mpirun -np 4 program` starts the same program as for threads. Rank 0
-/// distributes the points to free ranks, computes points itself, and writes the record. The record has the same format
-/// as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all ranks, and
-/// the next run continues the record.
+/// Studies distributed over the ranks of MPI. `mpirun -np 4 program` starts a program on four ranks. Rank 0 distributes
+/// the points to free ranks, computes points itself, and writes the record. The record has the same format as that of a
+/// run with threads, so each kind of run can continue the record of the other. If a rank dies, mpirun ends all ranks,
+/// and the next run continues the record.
 ///
 /// Requires MPI (study/mpi_ranks.hpp explains the linking).
 
@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Text of the results, which rank 0 sends to all ranks at the end: counts, and a line for each finished point.
+/// Text of the results, which rank 0 sends to all other ranks at the end: counts, and a line for each finished point.
 template <class = void>  // compiled where it is used
 std::string text_of(StudyResults const& results) {
   std::string text = std::to_string(results.resumed) + (results.torn ? " 1\n" : " 0\n");

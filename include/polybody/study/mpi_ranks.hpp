@@ -61,7 +61,7 @@ namespace detail {
 
 /// Type of a message. A rank other than 0 requests a point and sends the outcome of its previous point (`asks`), or
 /// stops the study because of an error (`stops`). Rank 0 answers with a point, or with `no_more`. At the end rank 0
-/// sends the results to all ranks (`found`), or the reason of a failure (`refused`).
+/// sends the results to all other ranks (`found`), or the reason of a failure (`refused`).
 enum class RankTag : int { asks = 1, stops, point, no_more, found, refused };
 
 /// Text from another rank.

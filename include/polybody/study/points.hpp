@@ -14,8 +14,9 @@
 
 namespace polybody {
 
-/// Error of a program that uses a study wrongly: the function of a point reads a column that does not exist, or returns
-/// the wrong number of outputs. The error ends the study and is not recorded as a failure of the point.
+/// Error of a program that uses a study wrongly. For example, the function of a point reads a column that does not
+/// exist, or returns the wrong number of outputs. The error ends the study and is not recorded as a failure of the
+/// point.
 class StudyUsageError : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -58,7 +59,8 @@ class Points {
   std::vector<double> const& values() const { return values_; }          ///< (points × columns) values, row by row
   std::string const& origin() const { return origin_; }  ///< description of the rule that generated the points
   /// Value of a `point` in a `column`, in the unit of the column.
-  /// \throws std::out_of_range if there is no such point or column.
+  /// \param column index of a column that exists; it is not checked
+  /// \throws std::out_of_range if there is no such point.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
   /// Row number `point`, from 0. This table must outlive the returned Point.
   Point operator[](std::size_t point) const;

@@ -105,8 +105,8 @@ RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
 
 /// Record of one study, locked by this process while it is open. Each line is written to the operating system at once,
 /// so a killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation
-/// is at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has
-/// not stored. Not thread-safe.
+/// is at least 0.1 s ago. A loss of power can therefore lose the lines since the last synchronisation, and lines that
+/// the disk has not stored. Not thread-safe.
 class StudyRecord {
  public:
   /// Opens or creates the record, and removes the incomplete line of a killed run.

@@ -49,9 +49,10 @@ std::string table_text(StudyResults const& found, bool with_measured) {
 }  // namespace detail
 
 /// Writes the finished points of the results `found` to `file`, in the order of the points, with units in the heads.
-/// Numbers read back to the same double. The row of a failed point has no outputs; the column "failure" contains the
-/// message. Measured outputs are omitted, so the same study gives the same bytes. If there are measured outputs,
-/// NAME_measured.csv contains all outputs.
+/// Numbers read back to the same double. The row of a failed point has no outputs. If a point has failed, the column
+/// "failure" contains the messages. Measured outputs are omitted, so the same study gives the same bytes. If there are
+/// measured outputs, a second file contains all outputs. Its name is that of `file` with "_measured" before the
+/// extension.
 /// \throws IoError if a file cannot be written.
 template <class = void>
 void write_table(StudyResults const& found, std::filesystem::path const& file) {
@@ -77,7 +78,7 @@ StudyResults where(StudyResults found, Keeps const& keeps) {
 
 /// Curves of y over x for a Figure; x and y are parameters or outputs. There is one curve for each combination of
 /// values of the parameters `by`, with its points in the order of the table. Failed points are omitted.
-/// \throws InvalidInput for a column that does not exist.
+/// \throws InvalidInput for a column that does not exist, and for a name in `by` that is not the name of a parameter.
 template <class = void>
 std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std::string_view y,
                              std::vector<std::string> const& by = {}) {

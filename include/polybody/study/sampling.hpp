@@ -30,7 +30,7 @@ RandomAxis uniform(std::string name, std::string unit, double low, double high) 
 }
 
 /// Log-uniform distribution between `low` and `high` [unit]: the logarithm is uniformly distributed.
-/// \throws InvalidInput unless 0 < low < high.
+/// \throws InvalidInput unless 0 < low < high, both finite.
 template <class = void>
 RandomAxis log_uniform(std::string name, std::string unit, double low, double high) {
   if (!(low > 0.0 && low < high && std::isfinite(high)))
@@ -43,7 +43,7 @@ RandomAxis log_uniform(std::string name, std::string unit, double low, double hi
 }
 
 /// Normal distribution with this `mean` and standard `deviation` [unit], without bounds.
-/// \throws InvalidInput unless the standard deviation is positive.
+/// \throws InvalidInput unless the mean and the standard deviation are finite and the standard deviation is positive.
 template <class = void>
 RandomAxis normal(std::string name, std::string unit, double mean, double deviation) {
   if (!(deviation > 0.0 && std::isfinite(deviation) && std::isfinite(mean)))

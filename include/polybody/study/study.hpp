@@ -60,7 +60,7 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
   return outcome_within(options.time_limit, outputs.size(), [&] { return outcome_of(f, point, outputs); });
 }
 /// Checks the options of a run.
-/// \throws InvalidInput for less than one thread and a time limit that is negative or not finite.
+/// \throws InvalidInput for fewer than one thread, and for a time limit that is negative or not finite.
 template <class = void>
 void check(StudyOptions const& options) {
   if (options.threads < 1)
@@ -85,7 +85,7 @@ class Study {
  public:
   /// Study with its record, points and outputs. Does not access the file.
   /// \throws InvalidInput for no output, and for heads of outputs that are empty, not printable, equal or used by
-  /// columns.
+  /// columns, and for a description that is not printable.
   Study(StudyFile const& file, Points points, std::vector<StudyOutput> outputs)
       : file_(file), points_(std::move(points)), outputs_(std::move(outputs)) {
     std::vector<Column> heads;
@@ -108,7 +108,7 @@ class Study {
   /// exception the points that were finished before remain recorded.
   /// \throws IoError for a file that cannot be created or written, is open in another run, is damaged, or belongs to
   /// another study.
-  /// \throws InvalidInput for less than one thread and a negative time limit.
+  /// \throws InvalidInput for fewer than one thread, and for a time limit that is negative or not finite.
   /// \throws any other exception of f; with a time limit, an Error with the message of that exception.
   template <class F>
     requires std::is_invocable_v<F const&, Point const&>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Processor time of one thread, for the cost of a point while other points run at the same time. Needs POSIX.
+/// Processor time of one thread: the computing time of a point of a study, even if other threads compute other points
+/// at the same time. Needs POSIX.
 
 #include <ctime>
 

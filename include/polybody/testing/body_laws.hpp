@@ -26,14 +26,14 @@ namespace polybody::laws {
 ///     };
 ///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws>("Lrvf");
 ///
-/// For any other body the case gives points and mass:
+/// For any other body, the case gives points and reference values:
 ///
 ///     struct DumbbellCase {
 ///       static Dumbbell body();                     // with damping, if it has any
 ///       static Dumbbell undamped();                 // the same body without damping; optional if it has none
 ///       static std::vector<Dumbbell::Point> points();
 ///       static double mass();                       // [kg]
-///       static Vec3 centre();                       // of mass, in the reference configuration, world axes [m]
+///       static Vec3 centre();                       // centre of mass in the reference configuration, world axes [m]
 ///       static constexpr double stiffness = 900.0;  // largest elastic constant; 1 if omitted
 ///     };
 ///

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Functions that return the contact points of a contact geometry for two frames.
+/// Functions that return the contact point of a contact geometry for two frames, and whether the shapes overlap.
 ///
 /// Requires GoogleTest.
 
@@ -10,7 +10,7 @@
 
 namespace polybody::laws {
 
-using Touching = std::array<Frame<double>, 2>;  ///< frames of two shapes that overlap
+using Touching = std::array<Frame<double>, 2>;  ///< frames of the two shapes of a contact geometry
 
 /// Returns the contact point of `geometry`. The test fails unless there is exactly one.
 template <StateScalar T, class G>

@@ -25,17 +25,17 @@ struct FlexibleBodyLaws : BodyLaws<Case> {
   /// (nv) Elastic force and damping force, without the velocity terms of inertia.
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
 
-  /// The configuration of the case has a strain energy U > 0, a force f ≠ 0 and a damping force. Otherwise the other
-  /// laws would compare zeros.
+  /// In the configuration of the tests, U > 0, f ≠ 0, and f depends on the velocities. Otherwise the other laws would
+  /// compare zeros.
   void deformation_is_resisted_and_damped();
   /// f = 0 and U = 0 in the reference configuration of the same body at another placement.
   void rigid_motion_strains_nothing();
   /// f·w = 0 for the velocities w of a rigid motion and the internal force f(q, v) in any state of an objective body,
   /// including damping.
   void internal_forces_are_in_equilibrium();
-  /// f(q, v) = f(q, 0) for v of a rigid motion of an objective body.
+  /// The damping force is zero for the velocities v of a rigid motion of an objective body.
   void rigid_velocity_is_not_damped();
-  /// The power of damping is −vᵀD v < 0, with D = Dᵀ = −∂f/∂v.
+  /// The power of damping is −vᵀD v < 0. D = Dᵀ is the difference of −∂f/∂v with and without damping.
   void damping_takes_energy();
 
   static constexpr char const* suite = "FlexibleBodyLaws";

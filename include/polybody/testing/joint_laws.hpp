@@ -36,7 +36,7 @@ struct FramePair {
 /// Constraint function g of m equations, its Jacobian G = [Ga Gb] and its derivatives.
 struct SeenTerms {
   VecX g, rate;  ///< (m) g and Φ_t = ∂g/∂t
-  MatX G;        ///< (m×12)
+  MatX G;        ///< (m×12) Jacobian G
   MatX slope;    ///< (m×12) ∂g/∂(motions), by dual numbers
   MatX G_rate;   ///< (m×12) Ġ at constant twists and constant time, by dual numbers
 };
@@ -116,8 +116,8 @@ inline FramePair FramePair::moved_by(VecX const& motion) const {
   return {moved<double>(a, motion.head<6>()), moved<double>(b, motion.tail<6>())};
 }
 
-/// Laws of a joint geometry with its type erased, between frames a and b, with the twists V = [ṙ; ω] of both frames,
-/// the constraint function g, its Jacobian G = [Ga Gb] and the multipliers λ.
+/// Laws of a joint geometry, whose type is erased, between the frames a and b. Symbols: twists V = [ṙ; ω] of the
+/// frames, constraint function g, its Jacobian G = [Ga Gb], and multipliers λ.
 struct JointLawsOf {
   static constexpr double tolerance = 1e-12;                    ///< largest relative error of exact derivatives
   AnyGeometry const geometry;                                   ///< geometry under test
@@ -148,9 +148,9 @@ struct JointLawsOf {
     return relative * (1.0 + here.norm()) + 1e-14 * (near - here).norm() / 1e-7;
   }
 
-  /// g = 0 for frames of `closed()`. g ≠ 0 after a motion of b, if there are holonomic constraints.
+  /// g = 0 for frames of `closed()`. If there are holonomic constraints, g ≠ 0 after a motion of b.
   void closed_frames_satisfy_the_equations();
-  /// G = ∂g/∂(motions of the frames). For nonholonomic constraints g = 0 everywhere.
+  /// G = ∂g/∂(motions of the frames) for holonomic constraints. For nonholonomic constraints, g = 0 everywhere.
   void maps_are_the_derivative_of_the_function();
   /// `rate` = Φ_t = ∂g/∂t.
   void rate_is_the_derivative_of_the_function_by_time();

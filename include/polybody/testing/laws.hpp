@@ -22,7 +22,7 @@
 ///           {"DampingTakesPower", &SpringLaws::damping_takes_power, Case::damped}};
 ///     };
 ///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the tests
-///     Steel/SpringLaws.ForceFallsWithLength
+///     // names of the tests: Steel/SpringLaws.ForceFallsWithLength, …
 ///
 /// Typed tests of GoogleTest require a class for each law and type, which takes longer to compile.
 ///

@@ -13,8 +13,9 @@
 
 namespace polybody::laws {
 
-/// Saddle-point matrix [M, Gᵀ; G, 0] of a chain of bodies with six columns each, and joints of five constraint
-/// equations between neighbours. One block overlaps another (a spring on body 0). The order of the blocks is fixed.
+/// Saddle-point matrix [M, Gᵀ; G, 0] of a chain of bodies with six columns each, and joints with five constraint
+/// equations each. A joint connects body 0 to the ground; the others connect neighbours. One block overlaps another (a
+/// spring on body 0). The order of the blocks is fixed.
 struct Blocks {
   Index bodies;                               ///< number of bodies, and of joints
   Index size() const { return 11 * bodies; }  ///< rows of the matrix: 6 per body, 5 per joint
