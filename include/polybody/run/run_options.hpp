@@ -162,10 +162,10 @@ struct RunReport : RunCounts {
                        std::abs(found.energy) / found.scale, " of the exchanged energy (", found.scale, " J); ",
                        run.halved, " steps were halved. Repeat the run with half the step and compare."}));
     else if (found.peak > 2.0 * limit * found.scale)
-      add_warning(
-          sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion gains up to ", found.peak,
-                       " J that no work explains, ", found.peak / found.scale, " of the exchanged energy (",
-                       found.scale, " J), and loses energy later. Repeat the run with half the step and compare."}));
+      add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion gains up to ", found.peak,
+                               " J that no work explains, ", found.peak / found.scale, " of the exchanged energy (",
+                               found.scale, " J), and loses energy later; ", run.halved,
+                               " steps were halved. Repeat the run with half the step and compare."}));
     else if (found.halved > 0)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
                                " steps gained energy that no work explains; ", run.halved,

@@ -86,7 +86,7 @@ TEST(NodePatch, RefusesNodesThatTakeNoMoment) {
   Structure s = cloud(3);
   s.nodes[2] = 0.5 * (s.nodes[0] + s.nodes[1]);
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 2}, "Link"); }),
-                  "Link: a patch needs at least three nodes that are not in line, but this patch has 3 in line. "
+                  "Link: a patch needs at least three nodes that are not in line, but this patch has 3 nodes in line. "
                   "Enlarge the patch."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {}, "Link"); }), "but this patch has 0."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 7}, "Link"); }), "Link: node 7 does not exist"));
