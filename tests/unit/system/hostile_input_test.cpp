@@ -71,7 +71,7 @@ TEST(HostileInput, ASpringBetweenCoincidentPointsIsNamed) {
   auto const rod = model.add(Rigid<>::from(bar), "rod");
   model.apply(SpringDamper{.stiffness = 10.0, .free_length = 0.5}, model.ground().at({0, 0, 0}), rod.at(0.0), "strut");
   State x = model.reference_state();
-  std::string const said = "is not finite at t = 0 s, that of \"strut\"";
+  std::string const said = "is not finite at t = 0 s (force element \"strut\")";
   EXPECT_TRUE(
       has(message_of<NonFiniteValue>([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3}); }),
           said));
