@@ -75,7 +75,7 @@ TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
   };
   auto const zero = [](State const&) { return 0.0; };
   EXPECT_TRUE(has(said({{"", zero}}), "column 1, counted from 1, lacks a name or a value"));
-  EXPECT_TRUE(has(said({{"x [m]", zero}, {"y [m]", {}}}), "column 2 lacks"));
+  EXPECT_TRUE(has(said({{"x [m]", zero}, {"y [m]", {}}}), "column 2, counted from 1, lacks"));
   EXPECT_TRUE(has(said({{"x [m]", zero}, {"x [m]", zero}}), "duplicate column \"x [m]\""));
   EXPECT_TRUE(has(said({{"t [s]", zero}}), "duplicate column \"t [s]\""));
   EXPECT_TRUE(has(said({{"x [m]", zero}}, -1.0), "sampling"));
