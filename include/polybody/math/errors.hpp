@@ -87,8 +87,8 @@ struct ErrorTime : MessagePart {
   explicit ErrorTime(MessagePart const& part) : MessagePart(part, Role::time) {}
 };
 
-/// Part of a message that contains the message of another error. Data of that error are used if no earlier part sets
-/// them.
+/// Part of a message that contains the message of another error. The data of the other error are used if no
+/// earlier part sets them.
 struct ErrorCause : MessagePart {
   /// Message and data of `cause`, which must outlive the part.
   explicit ErrorCause(Error const& cause) : MessagePart(cause) {}

@@ -69,7 +69,7 @@ inline double squares(VecX const& x) { return squares(x.data(), x.size()); }
 /// Pseudorandom sign, 1 or −1, of entry i.
 inline double scattered_sign(Index i) { return (std::uint32_t(i + 1) * 2654435769u >> 31) != 0 ? 1.0 : -1.0; }
 
-/// True if all entries of `x` are finite and at most `largest_number`.
+/// True if all entries of `x` are finite, with magnitudes up to `largest_number`.
 inline bool all_finite(VecX const& x) {
   return squares(x) <= largest_number * largest_number || first_not_finite(x) < 0;
 }

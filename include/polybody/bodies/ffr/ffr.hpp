@@ -241,7 +241,7 @@ class Ffr {
   }
 
   /// Marker kinematics: r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙
-  /// θ˙].
+  /// θ˙] with u¨ for q¨ = 0.
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {

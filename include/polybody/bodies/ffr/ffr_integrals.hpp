@@ -42,10 +42,11 @@ void times(MatX const& m, T const* x, T* out) {
 
 }  // namespace detail
 
-/// Integrals of the body of a floating frame, in the axes of the frame, for the points u = u₀ + S q:
+/// Integrals of the body of a floating frame, in the axes of the frame. The points are u = u₀ + S q; geometric
+/// stiffening adds their axial foreshortening, which is quadratic in q, to u:
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
 ///   J(q) = inertia + [inertia_by_kl · q + qᵀ inertia_second_kl q]_kl, the inertia tensor about the origin,
-///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
+///   H(q) = ∫ρ ũ ∂u/∂q with the rows H_i = coupling_i + qᵀ coupling_by_i,
 ///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,
 ///   U = ½ qᵀ stiffness q + initial_force · q.
 struct FfrIntegrals {
@@ -54,10 +55,10 @@ struct FfrIntegrals {
   Mat<double, 3, Eigen::Dynamic> first_by;  ///< (3×n) ∫ρ S
   std::array<MatX, 3> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
   Mat3 inertia = Mat3::Zero();              ///< inertia tensor at q = 0 [kg m²]
-  std::array<VecX, 6> inertia_by;           ///< (n) part of J linear in q: entries xx, yy, zz, xy, xz, yz
-  std::array<MatX, 6> inertia_second;       ///< (n×n) symmetric; part of J quadratic in q
+  std::array<VecX, 6> inertia_by;           ///< (n) J_kl contains inertia_by_kl · q; kl = xx, yy, zz, xy, xz, yz
+  std::array<MatX, 6> inertia_second;       ///< (n×n) symmetric; J_kl contains qᵀ inertia_second_kl q
   Mat<double, 3, Eigen::Dynamic> coupling;  ///< (3×n) H at q = 0
-  std::array<MatX, 3> coupling_by;          ///< (n×n) part of H linear in q
+  std::array<MatX, 3> coupling_by;          ///< (n×n) row H_i contains qᵀ coupling_by_i
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n) ∂U/∂q at q = 0
 

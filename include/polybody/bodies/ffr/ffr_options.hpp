@@ -56,8 +56,8 @@ enum class FfrFrame {
 struct FfrOptions {
   Placement placement = {};  ///< initial placement of the frame
   FfrTerms terms = {};       ///< selected terms of the inertia
-  /// Frame of the deformation. Default: `mean_axes` for a body from a bar, and the frame of the shapes for a body from
-  /// a structure.
+  /// Frame of the deformation. Default for a body from a bar: `mean_axes`. Default for a body from a structure: the
+  /// frame in which its shapes are given; the shapes remain unchanged.
   std::optional<FfrFrame> frame = {};
   /// Geometric stiffening, for beams only. Default: on for a body from a bar, off for a body from a structure.
   std::optional<bool> stiffening = {};

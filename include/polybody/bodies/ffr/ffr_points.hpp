@@ -42,7 +42,7 @@ struct StructureAction {
 
 /// Eigenvalue ρ of largest magnitude of Φᵀ K_G Φ φ = ρ Φᵀ K Φ φ, with K_G = ∫ N (v′ᵀv′ + w′ᵀw′) dx and the axial forces
 /// N due to the `action`. The structure buckles at ρ = −1. Without K_G the relative error of the deflection is about ρ.
-/// The iteration converges from below.
+/// The iteration approaches |ρ| from below.
 /// \param shapes Φ (N×n) \param stiffness ΦᵀKΦ, factorised
 template <class = void>  // compiled only if used
 double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> const& stiffness,

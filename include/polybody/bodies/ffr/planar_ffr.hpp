@@ -289,7 +289,7 @@ class Ffr : public AddingCoordinates {
     return -g[0] * (i_.mass * q[0] + c * at.c[0] - s * at.c[1]) - g[1] * (i_.mass * q[1] + s * at.c[0] + c * at.c[1]);
   }
 
-  /// Marker kinematics: r = r₀ + A u, the angle θ + R_z q;  bias = A [−θ̇² u + 2 θ̇ e × u˙ + u¨; 0].
+  /// Marker kinematics: r = r₀ + A u, the angle θ + R_z q;  at q¨ = 0 bias = A [−θ̇² u + 2 θ̇ e × u˙ + u¨; 0].
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {

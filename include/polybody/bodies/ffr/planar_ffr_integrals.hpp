@@ -6,10 +6,11 @@
 
 namespace polybody::planar {
 
-/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame. For the
-/// points u = u₀ + S q, with C = ∂c/∂q and the unit normal e of the plane:
+/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame. The
+/// points are u = u₀ + S q; geometric stiffening adds their axial foreshortening, which is quadratic in q, to u. With
+/// C = ∂c/∂q and the unit normal e of the plane:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
-///   H = ∫ρ u × S = coupling + qᵀ coupling_by,
+///   H = ∫ρ u × ∂u/∂q = coupling + qᵀ coupling_by,
 ///   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
@@ -20,7 +21,7 @@ struct FfrIntegrals {
   VecX inertia_by;                          ///< (n) 2 ∫ρ u₀ · S
   MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS without stiffening
   VecX coupling;                            ///< (n) ∫ρ u₀ × S
-  MatX coupling_by;                         ///< (n×n) ∫ρ (S_xᵀ S_y − S_yᵀ S_x)
+  MatX coupling_by;                         ///< (n×n) skew-symmetric; ∫ρ (S_xᵀ S_y − S_yᵀ S_x) without stiffening
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n) ∂U/∂q at q = 0
 
@@ -52,8 +53,8 @@ struct FfrIntegrals {
     return x;
   }
   /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass and mass matrix.
-  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric without stiffening, and
-  /// for a moment of inertia that is not positive.
+  /// \throws InvalidInput naming `what` for integrals that this check refuses, for a `coupling_by` that is not
+  /// skew-symmetric without stiffening, and for a moment of inertia that is not positive.
   template <class = void>
   void check(std::string const& what) const {
     polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Interpolated directors that are made orthonormal, a policy of `Lrvf` for comparison [Romero 2004, §4].
+/// Rotation interpolation of `Lrvf`, for comparison: the directors are interpolated linearly, then made orthonormal
+/// [Romero 2004, §4].
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 

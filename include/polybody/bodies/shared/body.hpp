@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Concepts of bodies: the members that a formulation must have. Also the load stiffness of a marker by dual numbers.
+/// Concepts of bodies: the members that a formulation must have. The last function computes the load stiffness of a
+/// marker by dual numbers.
 
 #include <span>
 
