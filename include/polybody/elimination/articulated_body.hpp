@@ -1,10 +1,10 @@
 #pragma once
 /// \file
 /// Articulated-body algorithm: eliminates TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983;
-/// 2008, §7]. T maps the joint velocities u to the velocities of all bodies. K couples a body only with itself and its
-/// parent. The twist of a body at its centre of mass is x = [v; ω] = X x_p + S u, where x_p is the twist of its parent.
-/// After the elimination of its descendants, a body has the equation K̂ x + C x_p = f. With the blocks B = K(parent,
-/// body) and C = K(body, parent):
+/// 2008, §7]. T maps the joint velocities u to the velocities of all bodies. K couples each body only with itself, its
+/// parent and its children. The twist of a body at its centre of mass is x = [v; ω] = X x_p + S u. X x_p is the twist
+/// due to the twist x_p of the parent, and S contains the motions of the joint. After the elimination of its
+/// descendants, a body has the equation K̂ x + C x_p = f. With the blocks B = K(parent, body) and C = K(body, parent):
 ///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
 /// A root has no parent, and u are its own generalised velocities. The remaining constraint equations, with Jacobian G,

@@ -69,8 +69,8 @@ struct ArticulatedInertia {
       for (int j = 0; j < 3; ++j) first[3 * i + j] -= f * u[3 + j];
     }
   }
-  /// Adds XᵀI X for the inertia I = `from`, whose reference point lies at `d` from that of this inertia. The blocks of
-  /// XᵀI X are M, H' = H + d̃ M and Θ − H'd̃ + d̃ Hᵀ.
+  /// Adds the inertia I = `from`, whose reference point lies at the vector d from that of this inertia. The product XᵀI
+  /// X is added, with X [a; α] = [a + α × d; α]. Its blocks are M, H' = H + d̃ M and Θ − H'd̃ + d̃ Hᵀ.
   void add_carried(ArticulatedInertia const& from, T const* d) {
     T moved[9];
     for (int j = 0; j < 3; ++j) {

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Sparse equations that replace the dense equations in joint coordinates. Their unknowns are the velocities of all
-/// bodies and the multipliers of all joints except linear joints. Matrix entries of dependent coordinates of linear
-/// joints are distributed among the independent coordinates. The constraint equations of linear joints are omitted.
+/// Sparse equations that replace the dense equations in joint coordinates. Their unknowns are all velocities except
+/// those that depend on others through linear joints, and the multipliers of all constraint equations except those of
+/// linear joints. Matrix entries of dependent coordinates are distributed among the independent coordinates.
 
 #include <array>
 

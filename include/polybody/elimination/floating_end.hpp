@@ -60,7 +60,7 @@ T within_a_turn(T const& x) {
   return x + (within_a_turn(value_of(x)) - value_of(x));
 }
 /// Rotation [rad] of a marker's section relative to a planar floating frame that is rotated by `angle` [rad]. It is
-/// between −π and π, because deformations are small. \param a (3×3) axes of the marker
+/// taken between −π and π, because deformations are small. \param a (3×3) axes of the marker
 template <class T>
 T bent_by(FloatingEndOf<T> const& end, Mat<T, 3, 3> const& a, T angle) {
   using std::atan2;
@@ -68,7 +68,7 @@ T bent_by(FloatingEndOf<T> const& end, Mat<T, 3, 3> const& a, T angle) {
   return within_a_turn(atan2(section(1, 0), section(0, 0)) - angle);
 }
 /// Jacobian column of a motion with the translation `slide` at r and the rotation `turn`, referred to the world's
-/// origin. `finish_columns` refers it to the body's origin.
+/// origin. `move_column` refers it to the body's origin.
 template <class T>
 Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
   Vec<T, 3> const carried = cross<T>(r, turn);
@@ -96,7 +96,7 @@ void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const
 }
 
 /// Moves `run` from the joint's frame on a body to the floating frame of the body. With the position u, rotation R and
-/// angular velocity ω_d of the marker relative to the floating frame, in its axes,
+/// angular velocity ω_d of the marker (index m) relative to the floating frame, in the axes of this frame,
 ///   A = A_m Rᵀ,  ω = ω_m − A ω_d,  r = r_m − A u,  ṙ = ṙ_m − ω × A u − A u˙,
 ///   ω˙ = ω˙_m − ω × A ω_d − A ω˙_d,  r̈ = r̈_m − ω˙ × A u − ω × (ω × A u) − 2 ω × A u˙ − A u¨.
 /// q and v are full and already contain the body's deformation.

@@ -7,8 +7,8 @@
 /// all in world axes; b is the acceleration for u̇ = 0 and a parent without acceleration. The origin of a rigid body is
 /// its centre of mass. For a body with a floating frame, the joint carries the frame, and the deformation coordinates q
 /// remain unknowns. An end of a joint on such a body moves with q, which adds S_D q̇ to S u (`FloatingEnd`). Full
-/// vectors contain all bodies; reduced vectors contain the joint coordinates and deformations. Each function is one
-/// loop from the roots to the tips or back.
+/// vectors contain all bodies; reduced vectors contain the joint coordinates and deformations. Each function loops over
+/// the bodies, from the roots to the tips or back.
 
 #include <utility>
 
@@ -56,7 +56,7 @@ void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>
     }
   }
 }
-/// Sorts columns into the order of the coordinates, if they were computed from the last motion to the first.
+/// Sorts columns, computed from the last motion to the first, into the order of the coordinates.
 template <class T>
 void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
   Mat<T, 6, 6> const back = f.s;
@@ -113,9 +113,9 @@ namespace polybody {
 
 // Rigid body on a revolute joint: the most frequent case of `JointTree`, without a loop over the motions of a joint.
 
-/// Fills in `body.turn` if the joint permits a single rotation only. The signs of the quaternions of body and parent
-/// remain those of `reference`, the full coordinates of the reference state. \param parent index of the first
-/// coordinate of the parent; −1: the ground
+/// Fills in `body.turn` if the joint permits a single rotation only. The sign of the quaternions `still` and `turning`
+/// is that with which the quaternion of the body agrees with its value in `reference`, the full coordinates of the
+/// reference state. \param parent index of the first coordinate of the parent; −1: the ground
 template <class = void>
 [[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {
   if (body.motions.count != 1 || body.motions.list[0].kind != JointMotion::Kind::turn) return;
@@ -245,8 +245,9 @@ class JointTreeOf {
     }
   }
 
-  /// Computes the reduced u for which T u is nearest to the full x, or to x − b with `bias`. The distance is zero if x
-  /// satisfies the equations of the joints. Entries of roots and deformations are not written.
+  /// Computes the reduced u from the full x = T u, or from x = T u + b with `bias`. If x violates the equations of the
+  /// joints, u minimises the error of each joint for the given motion of its parent. Entries of roots and deformations
+  /// are not written.
   void reduce_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = detail::twist_of<T>(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {

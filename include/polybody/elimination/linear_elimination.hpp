@@ -2,8 +2,9 @@
 /// \file
 /// Elimination of dependent coordinates, e_d = Σ f_k e_k + c_d, with linear constraint equations C e = c, once before a
 /// run [thesis §3.5.4]. The dependent coordinates of earlier rows are eliminated from row k of C: row'_k = row_k − Σ_j
-/// m_kj row'_j. The coordinate of the largest entry p_k of row'_k becomes the next dependent coordinate. The
-/// multipliers follow from the balance Cᵀλ = −r of the dependent coordinates with the same factors m_kj:
+/// m_kj row'_j. The coordinate of the entry p_k of row'_k with the largest magnitude becomes the next dependent
+/// coordinate. The multipliers follow from the balance Cᵀλ = −r of the dependent coordinates with the same factors
+/// m_kj:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 
 #include <polybody/math/errors.hpp>

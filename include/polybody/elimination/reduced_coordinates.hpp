@@ -23,7 +23,7 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   using Maps = CoordinateMaps<Solution>;
 
  public:
-  /// True if the equations are solved by the articulated-body algorithm, from the tangent of the full model.
+  /// True if the articulated-body algorithm solves the equations.
   static constexpr bool solves_by_bodies = std::is_same_v<Solution, joint_coordinates::ArticulatedBody>;
   /// True if the unknowns of the linear equations are those of a time step. Otherwise the sparse equations of all
   /// bodies (`BodyEquationsOf`) are solved.

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Sink that adds the blocks b of a full tangent to a reduced system as Pᵀ b P. P relates the full unknowns x to the
-/// reduced unknowns y, x = P y; rows of omitted unknowns are zero.
+/// reduced unknowns y, x = P y. The rows of P for omitted unknowns are zero.
 
 #include <algorithm>
 #include <list>
@@ -147,7 +147,7 @@ class UnknownMapOf {
     Index full_size = 0, size = 0;       ///< number of full unknowns, and of reduced unknowns
     Sequence<Run> runs;                  ///< all reduced unknowns of the range, ascending
     Sequence<Sequence<Target>> targets;  ///< targets of each full unknown, by local number
-    Sequence<Part> parts;                ///< the whole range if `copied` is true
+    Sequence<Part> parts;                ///< all unknowns with targets, if `copied` is true
     bool copied = false;  ///< true if each full unknown of the range has at most one target, with factor one
   };
   /// Range of the `size` full unknowns from `first` on. Searches and allocates.

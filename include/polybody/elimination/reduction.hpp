@@ -50,7 +50,7 @@ class ReductionOf {
   Sequence<Index> const& nonholonomic_equations() const { return nonholonomic_equations_; }
   /// Full velocity index of reduced velocity i. For a joint coordinate this is the first velocity of the carried body.
   Index full_velocity(Index i) const { return full_velocity_[std::size_t(i)]; }
-  /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`.
+  /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`; −1: none.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
   /// Copies from `reduced` to `full` the coordinates that both vectors contain.

@@ -241,14 +241,16 @@ template <class T>
 
 }  // namespace detail
 
-/// t += twist due to the rigid motion of the parent, with twist `parent` (6), at a body at `arm` (3) from the parent.
+/// Adds to t (6) the twist that a body has if it moves rigidly with its parent. \param parent twist (6) of the parent
+/// \param arm vector from the parent's origin to the body's origin
 template <class T>
 void add_carried(Vec<T, 6> const& parent, Vec<T, 3> const& arm, Vec<T, 6>& t) {
   Vec<T, 3> const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
   for (int i = 0; i < 6; ++i) t[i] += parent[i];
   for (int i = 0; i < 3; ++i) t[i] += rate[i];
 }
-/// parent += wrench w = [f; m] (6) of a body at `arm` (3) from the parent.
+/// Adds the wrench w = [f; m] (6) of a body to the wrench `parent` (6) of its parent. \param arm vector from the
+/// parent's origin to the body's origin
 template <class T>
 void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
   Vec<T, 3> const moment = cross<T>(arm, {w[0], w[1], w[2]});

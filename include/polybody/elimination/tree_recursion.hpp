@@ -122,7 +122,8 @@ struct TreeRecursionOf {
       set_inertia(links[i], bodies[i]);
     }
   }
-  /// Adds to p the forces that the motion of all bodies requires at u̇ = 0 without weight: ω × (ω × m c) and ω × Θ ω.
+  /// Adds to p of each body the centrifugal force ω × (ω × h) and the gyroscopic moment ω × Θ ω, with the first and
+  /// second moments of mass h and Θ.
   void add_velocity_forces() {
     for (Body& b : bodies) {
       T spin[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
@@ -131,7 +132,7 @@ struct TreeRecursionOf {
       add_centrifugal(b);
     }
   }
-  /// p += ω × (ω × m c).
+  /// p += ω × (ω × h), with the first moment of mass h.
   static void add_centrifugal(Body& b) {
     T const* const h = b.inertia.first;
     T const mc[3] = {h[5], h[6], h[1]};

@@ -193,7 +193,7 @@ class BlockFactor<symmetry>::NullSpace {
   double limit_ = 0.0;     // size of the dropped unknown times the limit of entries
   Sequence<char> waits_;
   Sequence<int> front_, visited_;
-  Sequence<int> first_earlier_, earlier_;  // nodes with a block in the rows of each node
+  Sequence<int> first_earlier_, earlier_;  // for each node: earlier nodes that share a block with it
 };
 
 template <Symmetry symmetry>

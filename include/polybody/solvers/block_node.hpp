@@ -201,7 +201,7 @@ struct Triangle {
 };
 
 /// For `count` SIMD vectors of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up. If `inverse` is not
-/// null, each row is then multiplied by the inverse of its pivot.
+/// null, each x_r is multiplied by the inverse of its pivot before the rows above use it.
 template <int N, int count>
 inline void substitute_back(double* x, int stride, Triangle t, double const* inverse) {
   Lane y[N][count];

@@ -27,7 +27,8 @@ class EigenLdlt {
   static constexpr double largest_asymmetry = 0.1;  ///< largest ratio ‖A − Aᵀ‖/‖A‖; above it `factor` throws
   static constexpr int most_refinements = 20;       ///< largest number of refinement steps of a solution
   static constexpr int most_iterations = 60;        ///< largest number of BiCGSTAB iterations in a refinement step
-  using Unsymmetric = EigenSparseLu;                ///< replaces this solver if the tangent is not symmetric
+  /// Solver that algorithms with unsymmetric matrices use instead (`UnsymmetricSolver`).
+  using Unsymmetric = EigenSparseLu;
 
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<char> has_diagonal(std::size_t(size), 0);

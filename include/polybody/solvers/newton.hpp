@@ -27,8 +27,8 @@ struct NewtonOptions {
   double budget = 0.0;
   bool predictive_stop = true;  ///< true: stop by the predicted next correction; false: by the last one
 
-  /// \throws InvalidInput if a count is outside [1, 10⁶], if the cost is negative or NaN, or if the budget is below the
-  /// cost of a factorisation and an iteration. The message begins with `who`.
+  /// \throws InvalidInput if a count is outside [1, 10⁶], if the cost is negative or NaN, or if a nonzero budget is
+  /// below the cost of a factorisation and an iteration. The message begins with `who`.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
     require_count(max_growths, who, ": newton.max_growths");
@@ -148,7 +148,7 @@ struct NewtonSolve {
   bool begins_fresh;  ///< the solve begins with a new factorisation
   NewtonReport report = {};
   NewtonProgress progress = {};
-  bool fresh = false, renewed = false;  ///< true if the tangent was factorised at the last, at this iterate
+  bool fresh = false, renewed = false;  ///< true if the tangent was factorised at the last or at this iterate
   bool rounding = false;                ///< the correction consists of round-off
   bool restarted = false;               ///< the solve has returned to its first iterate
   bool follows = false;                 ///< the last correction used the current factorisation

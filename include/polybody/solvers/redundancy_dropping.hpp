@@ -26,9 +26,9 @@ concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:
-  /// Ratio of a pivot to the largest entry of its column, below which the pivot is weak. A row of G at the distance σ
-  /// from the span of other rows has one pivot of σ² or two pivots of σ, depending on the elimination order.
-  /// `BlockSolver` drops the row if σ² ≤ 1e-9.
+  /// Value of `Solver::least_pivot` below which a pivot is weak. For LU solvers, it is usually the ratio of the pivot
+  /// to the largest entry of its column. A row of G at the distance σ from the span of other rows has one pivot of σ²
+  /// or two pivots of σ, depending on the elimination order. `BlockSolver` drops the row if σ² ≤ 1e-9.
   static constexpr double weak = 1e-3;
 
   void analyse(Index size, std::span<Block const> blocks) {

@@ -73,7 +73,8 @@ struct BodyKernels {
   /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end
   /// of this storage. \param owner position of the first body in the layout
   [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
-  /// Increases `forces` and `tangents` to the numbers of entries that threads need for all elements of one body.
+  /// Increases `forces` and `tangents` to the numbers of entries that threads need for all elements of one body, or for
+  /// all bodies if threads share these.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
   /// Evaluates frame, Jacobian and bias of every marker.

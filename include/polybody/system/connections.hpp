@@ -30,7 +30,7 @@ template <class G>
 concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
 
 /// Pins (joints with one free rotation) and driving constraints between rigid bodies. A driving constraint and a pin
-/// with different axes contradict each other.
+/// between the same bodies contradict each other if their axes differ.
 class DriveAxes {
  public:
   /// Adds a driving constraint if `drives` is true, otherwise a pin. \param bodies indices of the first velocities of
@@ -107,7 +107,8 @@ struct ModelParts : ModelCounts {
   DriveAxes drive_axes = {};
 
   std::uint64_t serial() const { return origin.serial(); }
-  /// Requires that the ground with the serial number `given` belongs to this model. \throws InvalidInput naming `what`.
+  /// Requires that the ground with the serial number `given` belongs to this model or to an ancestor of it. \throws
+  /// InvalidInput naming `what`.
   void require_own_ground(std::uint64_t given, std::string const& what) const {
     if (!accepts(serial(), origin.ancestors(), given)) refuse_marker_of_another_model(what);
   }

@@ -112,12 +112,13 @@ class StepCoordinates<double> : public CoordinateMap<double> {
  public:
   /// `rate` = q˙, for joint coordinates only.
   virtual void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const = 0;
-  /// out = reduced state nearest to the full state x; exact if x satisfies the equations of the eliminated joints.
+  /// out = reduced state of the full state x. If x violates the equations of the eliminated joints, the violation is
+  /// lost.
   virtual void reduce_state(State const& x, State& out) = 0;
 
   /// Writes the full tangent of `write` into `sink`, in the unknowns of the linear system.
   virtual void write(BlockWriter const& write, BlockSink& sink) = 0;
-  /// Allocates storage for a state of the maps, which must not outlive them.
+  /// Allocates storage for a state of the maps. The storage must not outlive the maps.
   virtual std::shared_ptr<FrozenMaps> make_frozen() = 0;
   /// For `eliminated_equations`: writes −r of the full model to the right-hand side `out` of the linear system.
   virtual void balance_to_equations(VecX const& r, VecX& out) = 0;

@@ -146,7 +146,7 @@ struct Data {
   Index first_state = 0;                  ///< index of the first state z among the velocities
 
   Sequence<Wrench<double>> loads;             ///< wrench on each marker in the residual, for second-order terms
-  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< stiffness of each marker of the largest force group
+  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< workspace: stiffness of each marker of a force group
   Sequence<double> scratch;                   ///< workspace: blocks of n×18 and n×n; n: columns of the widest Jacobian
 
   bool linear_rows = true;  ///< if false, linear joints and markers that only these use are omitted

@@ -140,8 +140,7 @@ struct ForceKernels {
 
   /// Writes the unit mass of each first-order state. \param first index of the first state of the model
   static void masses(Pool const& pool, Index first, BlockSink& sink);
-  /// Writes ck K + cd D at t [s], with blocks between all velocities of an element's markers. Loads are multiplied by
-  /// `load_factor`.
+  /// Writes ck K + cd D of all elements at t [s]. Loads are multiplied by `load_factor`.
   static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);
   /// Stored energy of all elements with a potential [J].

@@ -214,8 +214,8 @@ struct ModelLayout {
       if (i >= b.q0 && i < b.q0 + b.coordinates) return sentence_of({"body \"", b.name, "\""});
     return "unknown";
   }
-  /// Name of the owner of unknown i. For i < `velocities`, the owner is the body of generalised velocity i or the force
-  /// of that first-order state. Otherwise it is the joint or body of constraint equation i − `velocities`.
+  /// Name of the owner of unknown i. For i < `velocities`, the owner is the body of velocity i, or the force element
+  /// whose first-order state is velocity i. Otherwise it is the joint or body of constraint equation i − `velocities`.
   [[gnu::cold]] std::string name_of(Index i) const {
     Index const row = i - velocities;
     for (BodyLayout const& b : bodies)

@@ -53,7 +53,7 @@ struct LinearPointOf {
 
   bool complete() const { return gradient_count == 3; }
   /// Map of J J₀⁻¹ w, the current direction of the material line that has direction w in the reference configuration.
-  /// For a body with incomplete gradients, returns the map of r′ for every w.
+  /// For a body with incomplete gradients, returns the map of its first gradient for every w.
   MatX carried(Vec3 const& w) const {
     if (columns == 0) return MatX(size, 0);
     if (!complete()) return gradients[0];

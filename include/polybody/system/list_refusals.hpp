@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Compile-time messages for lists of types that cannot form a model. Each message names the missing member.
+/// Compile-time messages for lists of types that cannot form a model. Messages about bodies and forces name the missing
+/// member.
 
 #include <tuple>
 

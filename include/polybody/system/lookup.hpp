@@ -11,7 +11,8 @@
 
 namespace polybody {
 
-/// Requires a ground marker of this model. \throws InvalidInput naming `what` for a marker of another model.
+/// Requires a ground marker of the model of `layout`, or of a model from which it was copied. \throws InvalidInput
+/// naming `what` for a marker of another model.
 template <class = void>
 void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::string const& what) {
   if (!detail::accepts(layout.serial, layout.ancestors, marker.model)) detail::refuse_marker_of_another_model(what);
@@ -105,13 +106,13 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
 }
 
 /// Body of a handle with its part of the state x, found in the layout of its model. \throws InvalidInput for a handle
-/// of another model.
+/// of another model, or if the state is too short.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, BodyHandle<B> const& handle) {
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, handle))], x);
 }
 /// Body of a marker with its part of the state x, found in the layout of its model. \throws InvalidInput naming
-/// `question` for a marker of another model.
+/// `question` for a marker of another model, or if the state is too short.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B> const& marker,
                              std::string const& question) {

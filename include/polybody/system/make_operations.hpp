@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Functions and layout of a model. Only this header erases the type of a model. Each function runs the loops of
-/// the model's types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp) one after another.
+/// Implementation of `ModelOperations` for the types of a model (`OperationsOf`), and the layout of a model
+/// (`layout_of`). Each function runs the loops over bodies, joints or forces of one type (body_kernels.hpp,
+/// joint_kernels.hpp, force_kernels.hpp) for one type after another.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/force_kernels.hpp>

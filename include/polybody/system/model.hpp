@@ -186,7 +186,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   /// Sets the generalised velocities of a body to those of a rigid motion. `v0` is the velocity of the body-fixed point
   /// at the world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes. \throws InvalidInput for a
-  /// handle or state of another model.
+  /// handle of another model, or if the state is too short.
   template <OneOf<Bs...> B>
   void set_velocity(State& x, BodyHandle<B> const& handle, Vec3 const& v0, Vec3 const& omega) const {
     auto const& e = entry(handle);

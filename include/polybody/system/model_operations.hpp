@@ -125,7 +125,7 @@ class ModelOperations {
   virtual void measure_gamma(At<T> at, Data<T> const& data, Vector& out) const = 0;
   /// r += M a − f of all bodies, with gravity times `load_factor`.
   virtual void element_forces(At<T> at, Vector const& a, double load_factor, Data<T>& data, Vector& r) const = 0;
-  /// Writes the wrenches of all force elements to data.actions.
+  /// Writes the wrenches of all force elements to data.actions, and the rates of their states to data.rates.
   virtual void push_forces(double t, Data<T>& data) const = 0;
   /// Writes q ⊞ δ to out. The vectors are reduced vectors if `places` is not null.
   virtual void plus(ReducedPosition const* places, Vector const& q, Vector const& delta, Vector& out) const = 0;

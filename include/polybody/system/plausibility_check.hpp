@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Checks of every step of a run: constraint violations, unexplained energy, prescribed values that agree with their
+/// Checks of every step of a run: constraint violations, unexplained energy, prescribed values that contradict their
 /// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations. It
 /// therefore also converges in the steps of a diverging motion.
 
@@ -22,7 +22,7 @@ struct PlausibilityLimits {
   double warning = 0.05;   ///< unexplained energy that causes a warning, relative to `Unexplained::scale` [1]
 };
 
-/// Energy change of a run that its work does not explain.
+/// Energy change of a run that its work does not explain. Symbols: see `PlausibilityCheck`.
 struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
@@ -39,8 +39,8 @@ struct Unexplained {
 /// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find only half
 /// of the work of a force that is switched on within a step. The balance is evaluated each time Σ v² has grown by a
 /// tenth. Only a gain is refused, so dissipation is not counted. At the end of a run and before each restart, `settle`
-/// evaluates the balance with signed work. It counts losses if no part of the model dissipates energy. Models with a
-/// potential that depends on time have no energy balance.
+/// evaluates the balance, with signed work unless a counted element can store energy. It counts losses if no part of
+/// the model dissipates energy. Models with a potential that depends on time have no energy balance.
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
 /// value. It halves a step that gains more than ½ limit · S, or that gains a tenth of this and ends with E − E₀ minus
@@ -91,8 +91,8 @@ class PlausibilityCheck {
   [[gnu::cold]] void begin(System& system, PlausibilityLimits const& limits, StepResult const& place);
 
   /// Checks a step. `system` may be evaluated near the end of the step; it is evaluated at the end before a limit is
-  /// reported. \param squares Σ v², mixed units \throws Diverged if the end violates a limit, InvalidInput if a
-  /// prescribed value disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact.
+  /// reported. \param squares Σ v² \throws Diverged if the end violates a limit, InvalidInput if a prescribed value
+  /// disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact or needs halving.
   template <class = void>
   void require(System& system, StepResult const& end, double squares) {
     if (work_.counts()) work_.add(system, end);

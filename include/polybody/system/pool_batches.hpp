@@ -21,7 +21,7 @@ struct PoolBatches {
   Sequence<Index> bodies;  ///< bodies that are evaluated separately
   Sequence<std::array<PlacedElement, std::size_t(simd_size)>> filled;
   Sequence<PlacedElement> singles;  ///< elements that do not fill a SIMD vector
-  bool alone = true;                ///< true if no body is in two SIMD vectors
+  bool alone = true;                ///< true if each body in `filled` or `singles` has one element only
 };
 
 /// True if the pool has at least `least` bodies and each of them has one element.

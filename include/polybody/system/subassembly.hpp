@@ -6,7 +6,7 @@
 
 namespace polybody {
 
-/// Reference to a model that depends on some of the model's types only. A function that builds a hull or a suspension
+/// Reference to a model. Its type lists only some of the model's types. A function that builds a hull or a suspension
 /// is then compiled once for all models with these types:
 ///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>, Forces<SpringDamper>> hull(model);
 ///   auto const wheel = hull.add(body, "wheel");

@@ -225,8 +225,8 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
   x.history = stepped.history;
 }
 
-/// Appends estimates of the multipliers of eliminated joints to the multipliers of a reduced state. Its accelerations
-/// must be known.
+/// Appends estimates of the multipliers of eliminated joints to the multipliers of the reduced state `stepped`. The
+/// accelerations of this state must be known.
 template <class = void>
 [[gnu::cold]] void append_multipliers(System& s, State& stepped) {
   if (multipliers_of(s) == s.rows()) return;

@@ -43,8 +43,8 @@ concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, Ve
 /// Equations that `system_of` accepts.
 template <class E>
 concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserFirstOrderEquations<E>;
-/// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps, with given ck, cd. Without this
-/// tangent, central differences are used.
+/// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps, with given ck, cd. Central differences
+/// are used without this tangent, and for equations with first-order states.
 template <class E>
 concept HasForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
 /// Equations with constraint equations Φ(q, t) = 0, with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
