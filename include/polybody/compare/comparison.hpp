@@ -19,7 +19,7 @@ namespace polybody {
 /// Results of one run, a column of the report. A failed run contains the results up to its failure.
 struct ComparedRun {
   std::string name;                          ///< name of the formulation
-  std::string failure = {};                  ///< message of the exception that ended the run; empty if it is complete
+  std::string failure = {};                  ///< message of the exception that ended the run; empty for a complete run
   ProblemSize problem_size;                  ///< problem size of the model
   RunReport run;                             ///< steps, iterations and other counts of the run
   double cpu = 0.0;                          ///< CPU time of the steps [s]

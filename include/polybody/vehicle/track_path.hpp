@@ -2,7 +2,8 @@
 /// \file
 /// Initial positions of the links of a track: a closed and taut chain that penetrates no wheel.
 ///
-/// The length of the chain of track_trace.hpp depends on the position of the tensioner's circle. The root of
+/// The length of the chain that track_trace.hpp lays around the circles depends on the position of the tensioner's
+/// circle. The root of
 ///   track_length(layout, travel) = links
 /// is the travel at which the loop is closed.
 
