@@ -76,13 +76,13 @@ Comparison require_complete(Comparison c) {
 /// Number with name and unit.
 struct Quantity {
   std::string name;  ///< name with unit
-  double value;      ///< value in that unit
+  double value;      ///< value in the unit of `name`
 };
 
 /// History of a quantity at the times of a run.
 struct History {
   std::string name;            ///< name with unit
-  std::vector<double> values;  ///< values in that unit, one for each time of the run
+  std::vector<double> values;  ///< values in the unit of `name`, one for each time of the run
 };
 
 /// Column of the report for one run. The CPU ratio is relative to the `first` run. Outputs that a failed run has not

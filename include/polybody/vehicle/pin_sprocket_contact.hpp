@@ -125,7 +125,7 @@ struct PinSprocketContact {
     double const across = arm.dot(axle), far = farthest_ring();
     double const askew = observed == MarkerKind::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
                                                        : std::abs(x.dot(axle));
-    // Distance of the pin's middle; at the rings the pin is nearer by far · askew.
+    // Distance of the pin's middle; at the rings the pin may be nearer by up to far · askew.
     double const reach = profile.outer_radius() + far * askew;
     return arm.squaredNorm() - across * across < reach * reach;
   }

@@ -163,8 +163,8 @@ inline void check_wrapped(TrackPath const& path) {
                                          "for the links between it and its neighbours."});
 }
 
-/// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of p/16 and bisection.
-/// If there are several solutions, the solution nearest to zero is returned.
+/// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of at most p/16 and
+/// bisection. If there are several solutions, the solution nearest to zero is returned.
 inline double track_travel(TrackLayout const& layout) {
   TrackTensioner const& tensioner = layout.tensioner;
   double const range = tensioner.most - tensioner.least;
