@@ -19,7 +19,7 @@ namespace polybody {
 /// Results of one run, a column of the report. A failed run contains the results up to its failure.
 struct ComparedRun {
   std::string name;                          ///< name of the formulation
-  std::string failure = {};                  ///< message of the exception that ended the run; empty if it is complete
+  std::string failure = {};                  ///< message of the exception that ended the run; empty for a complete run
   ProblemSize problem_size;                  ///< problem size of the model
   RunReport run;                             ///< steps, iterations and other counts of the run
   double cpu = 0.0;                          ///< CPU time of the steps [s]
@@ -76,13 +76,13 @@ Comparison require_complete(Comparison c) {
 /// Number with name and unit.
 struct Quantity {
   std::string name;  ///< name with unit
-  double value;      ///< value in that unit
+  double value;      ///< value in the unit of `name`
 };
 
 /// History of a quantity at the times of a run.
 struct History {
   std::string name;            ///< name with unit
-  std::vector<double> values;  ///< values in that unit, one for each time of the run
+  std::vector<double> values;  ///< values in the unit of `name`, one for each time of the run
 };
 
 /// Column of the report for one run. The CPU ratio is relative to the `first` run. Outputs that a failed run has not

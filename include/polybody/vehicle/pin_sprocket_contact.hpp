@@ -72,7 +72,7 @@ struct SprocketProfile {
   struct Overlap {
     T depth, radial, tangential;  ///< penetration [m]; normal along the middle of the valley and across it
   };
-  /// Penetration and normal of a pin at x along the middle of a valley and y ≥ 0 across the valley, from the axle [m].
+  /// Penetration and normal of a pin at (x, y) from the axle [m]: x along the middle of a valley, y ≥ 0 across it.
   /// The penetration is negative if pin and tooth are separated.
   template <StateScalar T>
   Overlap<T> overlap(T const& x, T const& y) const {
@@ -125,7 +125,7 @@ struct PinSprocketContact {
     double const across = arm.dot(axle), far = farthest_ring();
     double const askew = observed == MarkerKind::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
                                                        : std::abs(x.dot(axle));
-    // Distance of the pin's middle; at the rings the pin is nearer by far · askew.
+    // Distance of the pin's middle; at the rings the pin may be nearer by up to far · askew.
     double const reach = profile.outer_radius() + far * askew;
     return arm.squaredNorm() - across * across < reach * reach;
   }

@@ -2,7 +2,8 @@
 /// \file
 /// Initial positions of the links of a track: a closed and taut chain that penetrates no wheel.
 ///
-/// The length of the chain of track_trace.hpp depends on the position of the tensioner's circle. The root of
+/// The length of the chain that track_trace.hpp lays around the circles depends on the position of the tensioner's
+/// circle. The root of
 ///   track_length(layout, travel) = links
 /// is the travel at which the loop is closed.
 
@@ -162,8 +163,8 @@ inline void check_wrapped(TrackPath const& path) {
                                          "for the links between it and its neighbours."});
 }
 
-/// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of p/16 and bisection.
-/// If there are several solutions, the solution nearest to zero is returned.
+/// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of at most p/16 and
+/// bisection. If there are several solutions, the solution nearest to zero is returned.
 inline double track_travel(TrackLayout const& layout) {
   TrackTensioner const& tensioner = layout.tensioner;
   double const range = tensioner.most - tensioner.least;

@@ -88,7 +88,7 @@ namespace detail {
 inline std::string track_name(TrackCircle const& c) { return sentence_of({"\"", c.name, "\""}); }
 
 /// Checks a layout for overlapping circles and repeated names. \throws InvalidInput if two circles overlap, or if two
-/// wheels have one name. The sprocket is represented by its pitch circle. Overlaps of the tensioner's circle are
+/// different wheels have the same name. The sprocket is represented by its pitch circle. Overlaps of the tensioner's circle are
 /// checked only if `placed` is true.
 inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
   std::vector<TrackCircle> all = layout.circles;
