@@ -88,8 +88,8 @@ namespace detail {
 inline std::string track_name(TrackCircle const& c) { return sentence_of({"\"", c.name, "\""}); }
 
 /// Checks a layout for overlapping circles and repeated names. \throws InvalidInput if two circles overlap, or if two
-/// different wheels have the same name. The sprocket is represented by its pitch circle. Overlaps of the tensioner's circle are
-/// checked only if `placed` is true.
+/// different wheels have the same name. The sprocket is represented by its pitch circle. Overlaps of the tensioner's
+/// circle are checked only if `placed` is true.
 inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
   std::vector<TrackCircle> all = layout.circles;
   all.push_back({layout.sprocket.name, layout.sprocket.centre, layout.pitch_radius()});
