@@ -57,17 +57,17 @@ class StepHistory {
 
   // Parts of the history of a state or of its derivative, which has the same parts.
 
-  /// Accelerations a of the method (nv).
+  /// Accelerations a of the method (nv), in x.
   template <class X>
   static auto own_of(X& x) {
     return x.history.head(x.v.size());
   }
-  /// Lengths h₋₅ … h₋₁ of the last steps, then the step length `shifted` [s]; empty for a state without a history.
+  /// Lengths h₋₅ … h₋₁ of the last steps, then the step length `shifted` [s]; empty if x has no history.
   template <class X>
   static auto lengths_of(X& x) {
     return x.history.tail(std::min<Index>(lengths, x.history.size()));
   }
-  /// Step length `shifted` [s].
+  /// Step length `shifted` of x [s].
   template <class X>
   static double shifted_of(X const& x) {
     return x.history[x.history.size() - 1];
@@ -84,9 +84,10 @@ class StepHistory {
   struct Range {
     Index first, count;  ///< first index; number of indices
   };
-  /// Entries on which `jerk` depends: D₀ and D₁ of v̇.
+  /// Entries on which `jerk` depends: D₀ and D₁ of v̇ (`nv` each).
   static Range points_of_jerk(Index nv) { return {nv, 2 * nv}; }
-  /// Entries on which the start correction depends: the lengths of the last two steps, and `shifted`.
+  /// Entries of a history of `size` entries on which the start correction depends: the lengths of the last two
+  /// steps, and `shifted`.
   static Range lengths_of_correction(Index size) { return {size - 3, 3}; }
   /// Appends the derivative dh of a step length to the derivatives `of_lengths` of earlier ones.
   template <class V>

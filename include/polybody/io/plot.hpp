@@ -245,7 +245,7 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
   return DrawResult::png;
 }
 
-/// Writes one figure to `stem`.dat, .gp and possibly .png, like `write_panels`.
+/// Writes one figure to `stem`.dat, .gp and, if `draw` is true, .png, like `write_panels`.
 template <class = void>
 DrawResult write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);

@@ -78,7 +78,7 @@ class RunDriver {
     step_.remainder = step_.plan.h < 0.01 * length;
     return step_;
   }
-  /// Takes the planned step, which replaces x. After an exception x and the driver are unchanged.
+  /// Takes the planned step of `run`, which replaces x. After an exception x and the driver are unchanged.
   template <class Run>
   void take_step(State& x, Run& run) {
     RunStep& s = step_;
@@ -96,9 +96,9 @@ class RunDriver {
       throw;
     }
   }
-  /// Takes a step of length h. If the step fails with `NewtonConvergenceFailure`, takes two steps of h/2 from a new
-  /// start, each of which can be halved again. An integrator that controls its step takes only the first half. After an
-  /// exception x is unchanged. \param halvings largest number of halvings
+  /// Takes a step of `run` of length h. If the step fails with `NewtonConvergenceFailure`, takes two steps of h/2 from
+  /// a new start, each of which can be halved again. An integrator that controls its step takes only the first half.
+  /// After an exception x is unchanged. \param halvings largest number of halvings
   template <class Run>
   StepReport halving_step(State& x, double h, int halvings, Run& run);
 
@@ -120,13 +120,13 @@ class RunDriver {
  private:
   struct Saved {
     StepRow row;
-    double h = 0.0;
+    double h = 0.0;  ///< length of the next step [s]
     std::size_t passed = 0;
     bool searched = false;  // events were evaluated in this step
   };
   /// Parts of one trial step in the search for events, from the start of the step of the run.
   struct Trial {
-    double end = 0.0;
+    double end = 0.0;  ///< time of the end [s]
     Sequence<double> lengths = {};
   };
 

@@ -13,7 +13,7 @@ namespace polybody {
 /// Consecutive steps of equal length. They end at t₀ + k h, so that round-off does not accumulate.
 struct StepRow {
   double start = 0.0, length = 0.0;  ///< t₀ and h [s]
-  double count = 0.0;                ///< k, number of steps
+  double count = 0.0;                ///< k, count of steps
 
   double end() const { return start + count * length; }  ///< time at which the last step ended [s]
   /// End of a step from t with the length `taken` [s]. A step of another length, or from another time, begins a new

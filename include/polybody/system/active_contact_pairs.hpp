@@ -29,8 +29,8 @@ class ActiveContactPairs {
     if (next_ == groups_.size()) groups_.push_back({few, {}, {}});
     return groups_[next_++];
   }
-  /// Records for this evaluation whether pair k of a group is in contact. Returns true if the pair has blocks in the
-  /// matrix.
+  /// Records for this evaluation if pair k of a group is in contact (`touches`). Returns true if the pair has blocks in
+  /// the matrix.
   bool note(Group& group, std::size_t k, bool touches) {
     if (k == group.has_blocks.size()) {
       group.has_blocks.push_back(0);

@@ -173,7 +173,7 @@ struct Data {
   Data(Data&&) = default;             ///< moves the arrays; pointers into them stay valid
   Data& operator=(Data&&) = default;  ///< moves the arrays; pointers into them stay valid
 
-  /// Index of the multiplier λ_i among the unknowns. The velocities are the first unknowns.
+  /// Index of multiplier i among the unknowns. The velocities are the first unknowns.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
   /// True if the evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
   bool leaves_out(ConstraintBlock<T> const& block) const {

@@ -78,7 +78,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
-  /// Refuses a joint whose type is not in the model's list, whatever the other arguments are.
+  /// Refuses a joint whose type is not in the model's list, for any `others`.
   template <class J, class... Rest>
     requires(!OneOf<J, Js...>)
   auto connect(J const&, [[maybe_unused]] Rest const&... others) {
@@ -127,15 +127,14 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Refuses a force whose type is not in the model's list, whatever the other arguments are.
+  /// Refuses a force whose type is not in the model's list, for any `others`.
   template <class F, class... Rest>
     requires(!OneOf<F, Fs...>)
   auto apply(F const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element unless the other arguments contain exactly its one or two markers, or a tuple of its
-  /// markers.
+  /// Refuses a force element unless the `others` contain exactly its one or two markers, or a tuple of its markers.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))

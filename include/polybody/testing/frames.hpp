@@ -11,7 +11,8 @@ namespace polybody::laws {
 /// Random numbers in [−size, size] with a fixed seed.
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< generator; equal seeds generate equal numbers
+  explicit Numbers(unsigned seed = 20240607)
+      : generator_(seed) {}  ///< generator; an equal `seed` generates equal numbers
 
   /// Next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }

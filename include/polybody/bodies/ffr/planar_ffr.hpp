@@ -204,8 +204,7 @@ class Ffr : public AddingCoordinates {
       w[i] -= detail::quadratic<T>(i_.first_second[i], xd, xd);
     out[0] = -(c * w[0] - s * w[1]);
     out[1] = -(s * w[0] + c * w[1]);
-    out[2] = -(j_rate * omega);
-    if (i_.stiffens() && pushes) out[2] -= detail::quadratic<T>(i_.coupling_by, xd, xd);
+    out[2] = -(j_rate * omega) - (i_.stiffens() && pushes ? detail::quadratic<T>(i_.coupling_by, xd, xd) : T(0.0));
   }
 
   template <class = void>
@@ -238,8 +237,7 @@ class Ffr : public AddingCoordinates {
         double const by_rate = -2.0 * cd * drawn, by_place = -2.0 * ck * omega * drawn;
         turned(3 + i, j == 0 ? by_rate : -by_place, j == 0 ? by_place : by_rate);
       }
-      k(2, 3 + i) += moving * omega * (ck * bent + cd * slope);
-      if (i_.stiffens()) k(2, 3 + i) += pushes * cd * (left + right);
+      k(2, 3 + i) += moving * omega * (ck * bent + cd * slope) + (i_.stiffens() ? pushes * cd * (left + right) : 0.0);
       k(3 + i, 2) -= cd * omega * terms_.centrifugal_slope(slope, i_.inertia_by[i]);
       if (terms_.coriolis) k(3 + i, 2) += cd * (right - left);
     }

@@ -21,9 +21,9 @@ struct FfrIntegrals {
   VecX inertia_by;                          ///< (n) 2 ∫ρ u₀ · S
   MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS without stiffening
   VecX coupling;                            ///< (n) ∫ρ u₀ × S
-  MatX coupling_by;                         ///< (n×n) skew-symmetric; ∫ρ (S_xᵀ S_y − S_yᵀ S_x) without stiffening
-  MatX mass_matrix, stiffness, damping;     ///< (n×n)
-  VecX initial_force;                       ///< (n) ∂U/∂q at q = 0
+  MatX coupling_by;                      ///< (n×n) ∫ρ (S_xᵀ S_y − S_yᵀ S_x); with stiffening, a symmetric part is added
+  MatX mass_matrix, stiffness, damping;  ///< (n×n)
+  VecX initial_force;                    ///< (n) ∂U/∂q at q = 0
 
   Index size() const { return mass_matrix.rows(); }             ///< number n of coordinates of the deformation
   bool stiffens() const { return first_second[0].size() > 0; }  ///< true with geometric stiffening
