@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include <polybody/solvers/tangent_solver.hpp>
+#include <polybody/integrators/step_tangent.hpp>
 
 #include "../examples/track_stress/formulations.hpp"
 #include "lockstep.hpp"
@@ -39,27 +39,27 @@ Parts parts_of(AnyModel const& model, State const& full, GeneralisedAlpha const&
   TangentCoefficients const c{(1.0 - m.alpha_m) / (1.0 - m.alpha_f), m.gamma * h, m.beta * h * h};
   StepPosition const place{{x.q, x.v, x.t}, x.a, x.lambda};
   auto const write = [&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, x.lambda, sink); };
-  TangentSolver<StepSolver<BlockSolver>> solver;
-  solver.analyse(system, 1, write);
+  StepTangent<StepSolver<BlockSolver>> tangent;
+  tangent.analyse(system, SecondOrder::omitted, x.lambda);
+  auto& linear = tangent.solver().linear_solver();
   VecX r(system.velocities()), rhs = VecX::Ones(system.velocities() + multipliers_of(system)), y = rhs;
-  solver.evaluate(system, place.at);
-  solver.balance(system, place, r);
-  if (solver.factor_tangent(system, place, c, SecondOrder::omitted) >= 0) std::printf("no pivot\n");
+  tangent.evaluate(system, place.at);
+  tangent.balance(system, place, r);
+  if (tangent.factor(system, place, c) >= 0) std::printf("no pivot\n");
   auto const nothing = [] {};
-  std::vector<double> const us =
-      timing::fastest({{nothing, [&] { solver.evaluate(system, place.at); }},
-                       {nothing, [&] { solver.balance(system, place, r); }},
-                       {nothing, [&] { solver.correct(rhs, y); }},
-                       {nothing, [&] { (void)solver.factor_tangent(system, place, c, SecondOrder::omitted); }},
-                       {[&] {
-                          solver.linear_solver().begin();
-                          BlockSink sink(solver.linear_solver());
-                          write(sink);
-                        },
-                        [&] { (void)solver.linear_solver().factor(); }}},
-                      101);
+  std::vector<double> const us = timing::fastest({{nothing, [&] { tangent.evaluate(system, place.at); }},
+                                                  {nothing, [&] { tangent.balance(system, place, r); }},
+                                                  {nothing, [&] { tangent.correct(rhs, y); }},
+                                                  {nothing, [&] { (void)tangent.factor(system, place, c); }},
+                                                  {[&] {
+                                                     linear.begin();
+                                                     BlockSink sink(linear);
+                                                     write(sink);
+                                                   },
+                                                   [&] { (void)linear.factor(); }}},
+                                                 101);
   double const numeric = us[4];
-  return {us[0], us[1], us[2], us[3] - numeric, numeric, solver.linear_solver().flops() / timing::eigen_rate()};
+  return {us[0], us[1], us[2], us[3] - numeric, numeric, linear.flops() / timing::eigen_rate()};
 }
 
 void measure(Options const& o, Combination const& combination) {

@@ -27,15 +27,19 @@ class BodyEquationsOf {
     for (Index i = 0; i < nv; ++i)
       if (!dependent[std::size_t(i)]) targets[std::size_t(i)].push_back({velocities_++, 1.0});
     for (auto const& d : reduction.linear().dependents())
-      for (auto const& t : d.terms)
-        targets[std::size_t(d.v)].push_back({targets[std::size_t(t.v)][0].unknown, t.factor});
+      for (auto const& t : d.terms) {
+        Index const to = targets[std::size_t(t.v)][0].unknown;
+        targets[std::size_t(d.v)].push_back({to, t.factor});
+        dependents_.push_back({d.v, to, t.factor});
+      }
     Sequence<bool> linear(std::size_t(full_constraints), false);
     for (LinearConstraints const& rows : linear_rows)
       for (Index i = 0; i < rows.rows(); ++i) linear[std::size_t(rows.row + i)] = true;
     for (Index i = 0; i < full_constraints; ++i)
       if (!linear[std::size_t(i)]) targets[std::size_t(nv + i)].push_back({velocities_ + rows_++, 1.0});
     map_ = UnknownMap(std::move(targets));
-    for (Index i = 0; i < nv + full_constraints; ++i) of_.push_back(map_.run(i, 1));
+    for (Index i = 0; i < nv + full_constraints; ++i)
+      of_.push_back(i < nv && dependent[std::size_t(i)] ? -1 : map_.run(i, 1));
     rows_that_stay_ = reduction.remaining_equations();
     Sequence<bool> stays(std::size_t(full_constraints), false);
     for (Index const i : rows_that_stay_) stays[std::size_t(i)] = true;
@@ -73,11 +77,12 @@ class BodyEquationsOf {
     next_slots_ = (next_slots_ + 1) % slots_.size();
   }
 
-  /// Sets the entries of `out` for velocities to factor · `full`, where `full` has all velocities. Other entries are
-  /// unchanged.
+  /// Sets the entries of `out` for velocities to factor · Tᵀ `full`, where T gives all velocities from the independent
+  /// ones. Other entries are unchanged.
   void from_velocities(VecX const& full, double factor, VecX& out) const {
     for (Index i = 0; i < full.size(); ++i)
       if (Index const to = of_[std::size_t(i)]; to >= 0) out[to] = factor * full[i];
+    for (Dependent const& d : dependents_) out[d.to] += factor * d.factor * full[d.from];
   }
   /// Sets the entries of `out` for constraint equations: `rows` for the remaining equations, zero for joints with joint
   /// coordinates.
@@ -96,6 +101,11 @@ class BodyEquationsOf {
   void to_eliminated_equations(VecX const& solution, double* out) const { take(carrying_rows_, solution, out); }
 
  private:
+  /// Term of a dependent velocity.
+  struct Dependent {
+    Index from, to;  // full velocity, equation of the independent velocity
+    double factor;
+  };
   Index of_row(Index row) const { return of_[std::size_t(full_velocities_ + row)]; }
   void take(Sequence<Index> const& rows, VecX const& solution, double* out) const {
     for (std::size_t i = 0; i < rows.size(); ++i) out[i] = solution[of_row(rows[i])];
@@ -105,6 +115,7 @@ class BodyEquationsOf {
   UnknownMap map_;
   Sequence<Index> of_, rows_that_stay_,
       carrying_rows_;  // of_: equation of each full unknown; −1 if it is distributed or omitted
+  Sequence<Dependent> dependents_;
   MappedBlocks mapped_;
   // Destinations of the blocks in the last four solvers that received the matrix.
   std::array<ReducedSlotsOf<>, 4> slots_;

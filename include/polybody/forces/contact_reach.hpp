@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Region in which a contact can act on a marker. The test is the same for all contacts and vectorises over many
-/// markers.
+/// Region in which a contact can act on a marker. The test of a region is the same for all contacts and vectorises over
+/// many markers.
 
 #include <concepts>
 

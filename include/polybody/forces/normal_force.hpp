@@ -37,9 +37,9 @@ double falling_root(F const& f, double from, double to) {
 }
 }  // namespace detail
 
-/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. The coefficient of restitution is independent of the
-/// impact velocity. At the first contact of a body with the velocity v, the force jumps to c v. With an `onset`, the
-/// damping coefficient increases with the penetration, c min(1, d/onset), and the force is continuous. Steps that are
+/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. Without an `onset`, the coefficient of restitution is
+/// independent of the impact velocity v, and the force jumps to c v at the first contact. With an `onset`, the damping
+/// coefficient increases with the penetration, c min(1, d/onset), and the force is continuous. Steps that are
 /// long compared with an impact require a continuous force.
 struct SpringDamperContact {
   Required<double> stiffness;  ///< k [N/m]

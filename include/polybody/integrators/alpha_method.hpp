@@ -35,7 +35,7 @@ struct AlphaMethod {
   double tolerance;                      ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton;                  ///< options of Newton's method
   bool start_correction;    ///< true: multipliers have second order from the first step on, and across changes of h
-  bool second_order_terms;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool second_order_terms;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised;          ///< true: μ enforces Φ = 0, and λ enforces Φ̇ = 0
 
   /// Memory of a step, allocated once.
@@ -290,9 +290,9 @@ struct AlphaMethod {
 
   /// Performs one step from x. x changes only if Newton's method converges. A step that does not converge is repeated
   /// without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of the
-  /// iterate, because G rotates far within a step near singular configurations. The second repetition uses the
-  /// approximate stiffness of force groups, because friction jumps. If the rank of G decreases within the step, the
-  /// last repetition omits μ.
+  /// iterate, because G rotates far within a step near singular configurations. In models with force groups, a second
+  /// repetition uses the approximate stiffness of the groups, because friction jumps. If the rank of G decreases within
+  /// a stabilised step, a last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
@@ -374,9 +374,9 @@ struct AlphaMethod {
   }
 
   /// Computes q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. Returns false if
-  /// the two results disagree, or if a motion with constant q⃛ instead of zero changes the acceleration after h by more
-  /// than ½ h ‖q⃛‖. In an oscillator this occurs for ωh above 1.7; after an impulse, stiff components dominate q⃛.
-  /// Steps of h then do not resolve the motion, and a correction would add noise.
+  /// the two results disagree, or if the acceleration at x.t + h changes by more than ½ h ‖q⃛‖ when the motion is
+  /// extrapolated with this q⃛ instead of zero. In an oscillator the second case occurs for ωh above 1.7; after an
+  /// impulse, stiff components dominate q⃛. Steps of h then do not resolve the motion; a correction would add noise.
   template <class Solver>
   bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
     w.jerk.setZero();

@@ -57,7 +57,7 @@ class TreeRows {
   /// Velocities of a time step that row i depends on, ascending.
   Sequence<Index> const& velocities(Index i) const { return rows_[std::size_t(i)].velocities; }
 
-  /// Stores the positions of the last evaluation of the system for `write`.
+  /// Stores the state of the last `expand` for `write`.
   void hold() { frozen_->freeze(); }
   /// Adds row i to `sink`; its entries for the velocities `velocities(i)` are `row`. `row0` and `col0` are the row and
   /// column of the first equation and of the first unknown in the sink.

@@ -18,8 +18,8 @@ namespace polybody {
 // momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no net moment. This condition
 // holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of `Continuum`, springs, and
 // joints between points on their axes. With angles as coordinates, section frames (`ElasticLine`) and joints of axes,
-// energy is also conserved, but angular momentum only to the order of the method. First-order states use the midpoint
-// rule, Δz = h · h(q̄, v̄, z̄, t̄).
+// energy is also conserved, but angular momentum only to the order of the method. First-order states with
+// the rates ż(q, v, z, t) use the midpoint rule, Δz = h ż(q̄, v̄, z̄, t̄).
 
 /// Step with the parameter χ, which conserves or dissipates energy. `State::a` and `State::lambda` after a step are
 /// values at the middle of the step. With χ = 0, λ alternates by O(h) about the reaction, and the mean over two steps

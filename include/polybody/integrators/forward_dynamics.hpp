@@ -197,8 +197,8 @@ class ForwardDynamics {
     take(0, system.velocities(), out);
   }
 
-  /// Change of the velocities due to constraint violations of ±1 at (q, v, t). Near a singular configuration the change
-  /// grows as 1/σ, with the least singular value σ of the constraint Jacobian.
+  /// Largest change of a velocity that corrects violations of ±1 at (q, v, t), and number of redundant equations. Near
+  /// a singular configuration this change grows as 1/σ, with the least singular value σ of the constraint Jacobian.
   ConstraintGain constraint_gain(System& system, VecX const& q, VecX const& v, double t) {
     hold(system, q, v, t);
     for (Index i = 0; i < open_.size(); ++i) open_[i] = scattered_sign(i);

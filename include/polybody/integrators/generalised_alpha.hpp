@@ -23,7 +23,7 @@ struct GeneralisedAlpha {
   double tolerance = 1e-8;
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h
-  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   /// True to satisfy also Φ̇ = 0, at the cost of one factorisation of [M, Gᵀ; G, 0] per step.
   bool stabilised = false;
 

@@ -12,11 +12,11 @@ struct HhtAlpha {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double alpha = -0.1;              ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule; constraints need < 0
+  double alpha = -0.1;              ///< α in [−1/3, 0]: −1/3 damps most, 0: trapezoidal rule; α < 0 with constraints
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h
-  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
   /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.

@@ -16,7 +16,7 @@ struct Newmark {
   double beta = 0.25;               ///< coefficient β [1]
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
-  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
@@ -46,7 +46,7 @@ struct Trapezoidal {
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h
-  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
   /// \throws InvalidInput unless the tolerance is positive.

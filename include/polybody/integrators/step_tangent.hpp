@@ -14,7 +14,8 @@ namespace polybody {
 template <LinearSolver Solver>
 class StepTangent {
  public:
-  /// Allocates all memory for steps with or without second-order `terms`. \param lambda multipliers of any values
+  /// Allocates the memory for steps with or without second-order `terms`. \param lambda multipliers; only their number
+  /// matters, because the sparsity pattern does not depend on their values
   [[gnu::cold]] void analyse(System& system, SecondOrder terms, VecX const& lambda) {
     begins_with_ = terms == SecondOrder::included;
     has_second_ = false;
@@ -88,7 +89,8 @@ class StepTangent {
   /// Second-order terms of the present tangent: included or omitted.
   SecondOrder terms() const { return included_ || begins_with_ ? SecondOrder::included : SecondOrder::omitted; }
 
-  /// Activates second-order terms. \param lambda multipliers of any values
+  /// Activates second-order terms, and allocates their memory at the first call. \param lambda multipliers; only their
+  /// number matters
   [[gnu::cold]] void include(System& system, VecX const& lambda) {
     if (begins_with_ || included_) return;
     if (!has_second_) {

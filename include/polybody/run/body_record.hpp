@@ -25,7 +25,7 @@ struct BodySample {
   double t = 0.0;                            ///< time [s]
   Frame<double> frame;                       ///< frame of the body at its origin, the centre of mass
   Vec3 acceleration = Vec3::Zero();          ///< (3) acceleration of the origin, world axes [m/s²]
-  Vec3 angular_acceleration = Vec3::Zero();  ///< (3) world axes [rad/s²]
+  Vec3 angular_acceleration = Vec3::Zero();  ///< (3) angular acceleration, world axes [rad/s²]
   std::vector<LoadSample> loads;             ///< nonzero loads
 };
 

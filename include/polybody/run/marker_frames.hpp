@@ -55,7 +55,7 @@ Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) 
 using FrameIn = std::function<Frame<double>(State const&)>;
 
 /// Returns a function for the frame of a material point. The function stores the body, and accepts states of the model
-/// that made the handle.
+/// that made the handle `body`.
 /// \param marker marker on this body
 template <class B>
 FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {

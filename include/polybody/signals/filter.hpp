@@ -159,9 +159,9 @@ struct Spectrum {
   std::vector<double> amplitudes;   ///< amplitudes a_k, one per frequency [unit of the samples]
 };
 
-/// Amplitude spectrum of equally spaced samples `values` at `times` [s]. The mean is a₀; the other amplitudes are
-/// computed without it, with a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the Nyquist
-/// frequency). \throws InvalidInput for samples that are too few, not finite or not equally spaced.
+/// Amplitude spectrum of equally spaced samples `values` at `times` [s]. a₀ is |mean|; the other amplitudes are
+/// computed without the mean, with a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the
+/// Nyquist frequency). \throws InvalidInput for samples that are too few, not finite or not equally spaced.
 template <SpectralWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

@@ -22,8 +22,8 @@ namespace polybody {
 template <LinearSolver Solver>
 class StaticTangent {
  public:
-  /// Analyses the sparsity pattern and computes the scale u. `system` must outlive this object. All functions use the
-  /// state of the last call of `System::evaluate`.
+  /// Analyses the sparsity pattern and computes the scale u. `system` must outlive this object. The entries
+  /// of the matrix belong to the state of the last call of `System::evaluate`.
   StaticTangent(System& system, VecX const& lambda)
       : system_(&system), nv_(system.velocities()), rhs_(VecX::Zero(system.size())) {
     analyse(lambda);
@@ -84,8 +84,8 @@ class StaticTangent {
       return 0.0;
   }
 
-  /// Factorises the matrix at the present state and returns the sign of its determinant; 0 also for a singular
-  /// matrix. The scale u of the next factorisation does not change.
+  /// Factorises the matrix at the present state. Returns the sign of its determinant, ±1; 0 if the matrix is singular
+  /// or if the solver does not provide the sign. The scale u of the next factorisation does not change.
   double sign_here(VecX const& lambda) {
     double const next = unit_;
     double const sign = factor(lambda) < 0 ? sign_of_determinant() : 0.0;

@@ -6,9 +6,10 @@
 
 namespace polybody {
 
-/// Selects the contact pairs of force groups whose blocks a repeatedly evaluated matrix contains. A pair is selected if
-/// it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in contact with the same
-/// partner. Neighbours are included because, for example, links of a track come into contact one after another.
+/// Selects contact pairs of force groups: only selected pairs have blocks in a matrix that is evaluated repeatedly. A
+/// pair is selected if it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in
+/// contact with the same partner. Neighbours are included because, for example, links of a track come into contact one
+/// after another.
 class ActiveContactPairs {
  public:
   /// Pairs of one force group. Marker i of the group's many markers and contact partner j form pair i · few + j.
