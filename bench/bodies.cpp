@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A number that counts what is done to it.
+/// Number that counts the operations on numbers of its type.
 struct Counted {
   double x = 0.0;
   static inline long operations = 0;
@@ -95,13 +95,13 @@ void measure(char const* name, B const& body) {
   body.template plus<double>(span(q), span(delta), {at.data(), std::size_t(at.size())});
   Index const elements = body.elements();
 
-  auto const use = [](Index, auto const& x) {  // all of it: nothing may be left out as unused
+  auto const use = [](Index, auto const& x) {  // uses all entries, so that the compiler cannot omit any
     benchmark::DoNotOptimize(x.data());
     benchmark::ClobberMemory();
   };
   ForceScratch<B, double> force(body);
   TangentScratch<B> tangent(body);
-  int const repeats = elements < 16 ? 64 : 1;  // the clock is not that fine
+  int const repeats = elements < 16 ? 64 : 1;  // because one pass is too short for the clock
   double const ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
       for_each_residual<B, double>(body, {0, elements}, {span(at), span(v), span(a)}, force, use);

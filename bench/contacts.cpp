@@ -1,6 +1,7 @@
-// Contacts that begin and end: a chain of 64 links falls across five wheels, and every link may touch every wheel.
-// Three ways to treat the order of elimination: omit link–wheel blocks from the matrix and iterate over them; reserve
-// a slot for each of the 320 pairs; or compute a new order if a contact begins or ends.
+// Contacts that begin and end: a chain of 64 links falls across five wheels, and every link can touch every wheel.
+// There are three ways to treat the elimination order: omit link–wheel blocks from the matrix and iterate over them;
+// reserve a slot for each of the 320 pairs; or compute a new order if a contact begins or ends. The program measures
+// the first two ways and the time of a new order.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -11,8 +12,7 @@ namespace {
 
 using namespace polybody;
 
-/// Two balls press on each other along the line of centres while they overlap by δ: k δ (1 + d δ̇) [Hunt & Crossley
-/// 1975].
+/// Contact force of two balls along the line of centres for an overlap δ > 0: k δ (1 + d δ̇) [Hunt & Crossley 1975].
 template <bool Couples>
 struct Press {
   static constexpr int markers = 2;
@@ -20,7 +20,7 @@ struct Press {
   static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool couples_bodies = Couples;
 
-  double distance = 0.0;  ///< of the centres at first touch [m]
+  double distance = 0.0;  ///< distance of the centres at first contact [m]
   double k = 1e5, d = 0.5;
 
   void check(std::string const&) const {}
@@ -86,7 +86,7 @@ void report(char const* what, M const& model) {
   std::printf("\n");
 }
 
-/// Seconds of analysis and of one factorisation of the tangent at the start.
+/// Prints the times of an analysis and of one factorisation of the tangent in the reference state [µs].
 template <class M>
 void orders(char const* what, M const& model) {
   System system(model);

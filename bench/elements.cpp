@@ -1,6 +1,6 @@
-// Element kernels: nanoseconds per element for force and tangent, for single elements, for packs (structure of
-// arrays) and with two threads. The compiler may vectorise within a single element; -fno-tree-vectorize makes that
-// loop scalar and does not change the packs.
+// Element kernels: nanoseconds per element for force and tangent, for single elements, for packs (structure of arrays)
+// and with two threads. The compiler may vectorise the loop over single elements. -fno-tree-vectorize makes this loop
+// scalar and does not change the packs.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr Index count = 1024;
 
-/// Nanoseconds an element, the fastest of many passes.
+/// Time per element in the fastest of 200 passes [ns].
 template <class F>
 double fastest(F&& pass) {
   double best = 1e300;
@@ -52,7 +52,7 @@ template <class B>
 void compare(char const* name, Damping const& damping = {}) {
   constexpr int n = B::element_columns;
   Swaying<B> const s(damping);
-  auto const use = [](Index, auto const& x) {  // all of it: nothing may be left out as unused
+  auto const use = [](Index, auto const& x) {  // uses all entries, so that the compiler cannot omit any
     benchmark::DoNotOptimize(x.data());
     benchmark::ClobberMemory();
   };
@@ -86,7 +86,7 @@ void compare(char const* name, Damping const& damping = {}) {
       (force + tangent) / (forces + tangents));
 }
 
-/// Residual and tangent of a whole model of one body with `count` elements, alone and with two threads.
+/// Residual and tangent of a model of one body with `count` elements, with one thread and with two threads.
 template <class B>
 void share_loops(char const* name) {
   Model<Bodies<B>, Joints<>> model{Gravity{0, -9.81, 0}};

@@ -1,6 +1,6 @@
-// Factor and solve [M, Gᵀ; G, 0] of a tracked vehicle: two closed tracks of 64 links, wheels, sprockets and idlers on
-// a chassis, and couplings between links and the bodies in contact with them. Every solver gets the same matrix in
-// one run; then chains from 64 to 4096 links.
+// Factor and solve [M, Gᵀ; G, 0] of a tracked vehicle: two closed tracks of 64 links, wheels, sprockets and idlers on a
+// chassis, and couplings between links and the bodies in contact with them. All solvers are measured with the same
+// matrix in one run. Then the block solver is measured with chains of 64 to 4096 links.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -68,9 +68,9 @@ Blocks vehicle() {
     }
     pin(0, sprocket);
     pin(0, sprocket + 1);             // the tensioner's arm
-    pin(sprocket + 1, sprocket + 2);  // and the idler
+    pin(sprocket + 1, sprocket + 2);  // the idler on this arm
     for (int i = 0; i < links; ++i) pin(first + i, first + (i + 1) % links);
-    // what touches: wheels two links each, the sprocket thirteen, the idler twelve
+    // contacts: each wheel with two links, the sprocket with thirteen, the idler with twelve
     for (int i = 0; i < wheels; ++i)
       for (int k = 0; k < 2; ++k) couple(wheel + i, first + 8 + 5 * i + k);
     for (int k = 0; k < 13; ++k) couple(sprocket, first + (58 + k) % links);
@@ -179,7 +179,7 @@ void grow() {
   }
 }
 
-/// Is there a size below which dense LU is faster?
+/// Compares the block solver with dense LU for small chains.
 void small() {
   std::printf("\nwrite + factor + solve of small chains\n");
   for (int const links : {1, 2, 4, 8}) {

@@ -12,8 +12,11 @@ namespace {
 
 using namespace polybody;
 
-/// The angle from the upright, θ¨ = A sin θ with A = g ((N + 1)/2 + N)/((N + 1)/3 + N), θ(0) = 0, θ˙(0) = 1: with
-/// φ = θ/2 it is φ˙² = (¼ + A)(1 − k² cos² φ), k² = A/(¼ + A), and so √(¼ + A) t = F(φ + π/2, k) − K(k).
+/// Angle θ of the bars from the vertical at time t [rad], the solution of
+///   θ¨ = A sin θ, A = g ((N + 1)/2 + N)/((N + 1)/3 + N), θ(0) = 0, θ˙(0) = 1.
+/// With φ = θ/2 and k² = A/(¼ + A) this gives φ˙² = (¼ + A)(1 − k² cos² φ). Hence
+///   √(¼ + A) t = F(φ + π/2, k) − K(k)
+/// with the elliptic integrals F and K of the first kind.
 double angle(int n, double t) {
   double const a = 9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n), omega = std::sqrt(0.25 + a);
   double const k = std::sqrt(a) / omega, quarter = std::comp_ellint_1(k), half_pi = 0.5 * std::numbers::pi;

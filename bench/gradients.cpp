@@ -1,5 +1,5 @@
-// Cost of the derivatives of a run, as multiples of the run with the same options: chains with the densities of the
-// links as parameters, and the tracked vehicle with springs on its links. bench_gradients
+// Cost of the derivatives of a run, as multiples of the run with the same options: chains with factors of the masses of
+// the links as parameters, and the tracked vehicle with the stiffnesses of springs on its links as parameters.
 #include <cstdio>
 #include <ctime>
 
@@ -21,13 +21,13 @@ double cpu() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// A chain of rigid links or cables of 0.1 m on pins, let go from the side, at rest or as it turns about the vertical;
-/// parameters are factors of links' masses.
+/// Chain of rigid links or cables of 0.1 m on spherical joints, released from the horizontal, at rest or rotating about
+/// the vertical. The parameters are factors of the masses of the links.
 template <class B>
 struct Chain {
   int links;
   double end_time;
-  double turn = 0.0;  // [rad/s]
+  double turn = 0.0;  // initial angular velocity about the vertical [rad/s]
 
   auto operator()(std::span<double const> p) const {
     using Pin = Joint<Spherical, Constraint>;
@@ -58,8 +58,8 @@ struct Chain {
   }
 };
 
-/// The vehicle as it drops onto its tracks, with springs from 100 of its links to the ground; their stiffnesses are
-/// parameters.
+/// Vehicle that drops onto its tracks, with springs from 100 of its links to the ground. The parameters are factors of
+/// the stiffnesses of the springs.
 struct Vehicle {
   using Car = m113::Vehicle<>;
   double end_time;
@@ -83,7 +83,7 @@ struct Vehicle {
   }
 };
 
-/// Seconds that f takes, the least of three.
+/// Processor time of f [s], the least of three calls.
 template <class F>
 double least(F&& f) {
   double best = 1e9;
@@ -95,7 +95,8 @@ double least(F&& f) {
   return best;
 }
 
-/// A row of the table: derivatives of the run that `make` gives, by one parameter and by `most`.
+/// Prints a row of the table: cost of the derivatives of the run of the scenario `make(p)`, with respect to one
+/// parameter and to `all` parameters.
 template <class Make, class I>
 void print(char const* name, int links, Make const& make, std::vector<Parameter> const& all, I const& integrator) {
   auto const of = [&](std::size_t count) {

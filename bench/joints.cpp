@@ -1,8 +1,9 @@
-// Cost of a joint under each policy, on chains on pins that fall from a horizontal start. Growth: a step of h = 1 ms
-// from 16 to 1024 links, with the actual and with equal counts of iterations; exponents from 64 links on; both are
-// drawn in joints.png. Parts: nanoseconds per link for residual, tangent, factorisation and solution, compared with
-// links without joints. Links of 0.1 m: rigid in space, one cable element each in the plane. Processor time, the
-// fastest of several runs.
+// Cost of a joint under each policy, on chains on pins that fall from a horizontal start. The links have a length of
+// 0.1 m; they are rigid in space, or one cable element each in the plane.
+// Growth: time of a step of h = 1 ms with 16 to 1024 links, at the actual and at equal counts of iterations, and
+// exponents of growth from 64 links on. joints.png shows both times. Parts: nanoseconds per link for residual, tangent,
+// factorisation and solution, also compared with links without joints. All times are processor times, the fastest of
+// several runs.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -16,7 +17,7 @@ using namespace polybody;
 
 using Cable = planar::AncfCable<>;
 using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
-/// A chain of bodies B on pins of geometry G, each by one of the policies.
+/// Chain of bodies B on pins of geometry G, with one of the policies Ps.
 template <class B, class G, class... Ps>
 using Chain = Model<Bodies<B>, Joints<Joint<G, Ps>...>>;
 using Rods = Chain<Rigid<>, Revolute, Constraint, Penalty, PenaltyPerEquation<5>, Bushing, Laws>;
@@ -61,7 +62,7 @@ Chain<B, G, Ps...> chain(Chain<B, G, Ps...> const&, P const& policy, int links, 
 /// Processor time of this program [s].
 double now() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-/// The fastest of `tries` [s].
+/// Processor time of the fastest of `tries` calls [s].
 template <class F>
 double fastest(int tries, F&& pass) {
   double best = 1e300;
@@ -73,7 +74,7 @@ double fastest(int tries, F&& pass) {
   return best;
 }
 
-/// Takes the tangent's blocks and does nothing with them.
+/// Sink that copies the blocks of a tangent without further use.
 struct Taken {
   std::vector<double> block;
   void add(Index, Index, BlockView const& b) {
@@ -85,8 +86,8 @@ struct Taken {
 };
 
 struct Cost {
-  double residual, tangent, factor, solve;  ///< after 0.1 s, `factor` with its tangent [ns a link]
-  double step, iterations, factorisations;  ///< of the first 0.1 s, the mean [µs a step]
+  double residual, tangent, factor, solve;  ///< times in the state after 0.1 s, `factor` with its tangent [ns per link]
+  double step, iterations, factorisations;  ///< means over the first 0.1 s: time [µs] and counts of a step
 };
 
 template <class M>
@@ -129,7 +130,7 @@ Cost cost(M const& model, int links) {
   return out;
 }
 
-/// The slope of log y over log x from x = 64 on, by least squares.
+/// Slope of log y over log x for x ≥ 64, by least squares.
 double slope(Curve const& curve) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -155,7 +156,7 @@ struct Tables {
   }
 };
 
-/// One policy, up to `most` links; `free` is what the links cost without joints.
+/// Measures one policy for up to `most` links. `free` is the cost of links without joints.
 template <class M, class P>
 void measure(char const* name, M const& like, P const& policy, Cost const& free, Tables& out, int most = 1024) {
   Curve taken{.label = name, .style = "linespoints"}, equal = taken;

@@ -1,5 +1,5 @@
 // Cost of stepping variants of a model in the lanes of one SIMD vector: the iterations of the slowest variant, and a
-// factorisation if any variant needs one. The ratio to single runs bounds the gain of lanes.
+// factorisation if any variant needs one. The ratio of this cost to the cost of single runs is a bound of the gain.
 #pragma once
 #include <algorithm>
 #include <cstdio>
@@ -29,7 +29,8 @@ Counts counts_of(Run& run) {
   return out;
 }
 
-/// \param iteration, factorisation what one takes [µs]
+/// Prints the cost of `runs` in lanes compared with single runs.
+/// \param iteration, factorisation time of one iteration and of one factorisation [µs]
 inline void print(std::string const& what, std::vector<Counts> const& runs, double iteration, double factorisation) {
   std::size_t steps = runs.front().iterations.size();
   for (Counts const& run : runs) steps = std::min(steps, run.iterations.size());

@@ -1,7 +1,7 @@
-// Times of what comes before the first step of large models: adding the parts, `simulate` (assembly check, order of
-// elimination, first accelerations), `outline` and `check`; chains of planar bodies on pins, chains with every pin
-// doubled, and many pins at one point. The number in brackets is the exponent of growth between two rows: 1 is linear.
-// Processor time of one run.
+// Times before the first step of large models: adding the parts, `simulate` (assembly check, elimination order, first
+// accelerations), and the first step, `summary` and `diagnose`. The models are chains of planar bodies on pins, chains
+// with every pin doubled, and many pins at one point. The number in brackets is the exponent of growth between two
+// rows: 1 is linear. Processor time of one run.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
@@ -30,7 +30,7 @@ double seconds(std::function<void()> const& act) {
   return processor_time() - start;
 }
 
-/// Bars of 1 m and 1 kg in a row, each pinned to the one before by `copies` equal pins.
+/// Bars of 1 m and 1 kg in a row. `copies` equal pins connect each bar to the previous bar.
 template <class Policy>
 Chain<Policy> chain(int bodies, int copies = 1) {
   Chain<Policy> model{Gravity{0, -9.81, 0}};
@@ -47,7 +47,7 @@ Chain<Policy> chain(int bodies, int copies = 1) {
   return model;
 }
 
-/// One body on so many pins at one point.
+/// One body with this number of `pins` at one point.
 Chain<Constraint> pinned(int pins) {
   Chain<Constraint> model{Gravity{0, -9.81, 0}};
   auto const hub = model.add(planar::Rigid(1.0, 1.0, Placement::planar(0.5, 0.0)), "hub");
@@ -55,7 +55,7 @@ Chain<Constraint> pinned(int pins) {
   return model;
 }
 
-/// A line of times, and of exponents beside the line before.
+/// Printer of lines of times [s], with the exponents of growth from the previous line.
 class Table {
  public:
   void add(int size, std::vector<double> const& times) {
@@ -81,7 +81,8 @@ class Table {
 template <class Policy>
 void chains(char const* title) {
   std::printf(
-      "\n%s [s] (exponent)\n  bodies  adding            simulate          first step        outline           check\n",
+      "\n%s [s] (exponent)\n  bodies  adding            simulate          first step        summary           "
+      "diagnose\n",
       title);
   Table table;
   for (int const bodies : {1000, 3000, 10000, 20000, 100000}) {

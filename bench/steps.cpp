@@ -1,7 +1,7 @@
 // One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s,
 // with ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02); a very flexible cable pendulum.
-// Each by the default solver and by Eigen's sparse LU; the share of each part of a step; and what variants of a chain
-// would gain by stepping together.
+// Each model is solved with the default solver and with Eigen's sparse LU. The program also measures the parts of a
+// step, and the possible gain of variants of a chain in the lanes of SIMD vectors.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -22,7 +22,7 @@ struct Chain {
   using Pin = Joint<Revolute, Policy>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
 
-  /// \param factor of the mass of link i
+  /// \param factor returns the factor of the mass of link i
   template <class F>
   Chain(int links, Policy const& policy, F const& factor) {
     Pin const pin{Revolute{.axis = Vec3::UnitY()}, policy};
@@ -58,8 +58,8 @@ struct CablePendulum {
 };
 
 struct Cost {
-  double microseconds = 0.0;  ///< a step
-  double iterations = 0.0, factorisations = 0.0;
+  double microseconds = 0.0;                      ///< time of a step
+  double iterations = 0.0, factorisations = 0.0;  ///< counts per step
 };
 
 template <class Solver, class M>
@@ -89,7 +89,7 @@ void chains() {
   }
 }
 
-/// A row of the table: the default solver, Eigen's sparse LU, their ratio.
+/// Prints a row of the table: times of the default solver and of Eigen's sparse LU, and their ratio.
 template <class M>
 void compare_solvers(std::string const& what, M const& model, State const& x, double end_time) {
   Cost const block = cost<BlockSolver>(model, x, end_time), lu = cost<EigenSparseLu>(model, x, end_time);
@@ -132,7 +132,7 @@ struct FourBars {
   }
   State start() const {
     State x = model.reference_state();
-    for (std::size_t i = 0; i < up.size(); ++i)  // about its own foot
+    for (std::size_t i = 0; i < up.size(); ++i)  // rotation about the foot of the bar
       model.set_velocity(x, up[i], Vec3(0, double(i), 0), Vec3(0, 0, -1));
     for (auto const& bar : across) model.set_velocity(x, bar, Vec3(1, 0, 0), Vec3::Zero());
     return x;
@@ -159,7 +159,7 @@ void mechanisms() {
   }
 }
 
-/// The parts of an iteration on a chain of 64.
+/// Parts of an iteration for a chain of 64 links.
 struct Parts {
   Chain<Constraint> chain{64, {}};
   System system{chain.model};
@@ -214,7 +214,7 @@ BENCHMARK(assemble);
 BENCHMARK(assemble_and_factor);
 BENCHMARK(solve);
 
-/// Eight chains of 64 whose links differ in mass, at random.
+/// Measures eight chains of 64 links with random differences of the masses of their links.
 void variants() {
   Parts& p = parts();
   auto const nothing = [] {};
@@ -264,7 +264,7 @@ int run_alone(std::string const& model, int size, double end_time) {
     FourBars const bars(size);
     return run(bars.model, bars.start());
   }
-  std::fprintf(stderr, "bench_steps: %s is none of its models\n", model.c_str());
+  std::fprintf(stderr, "bench_steps: unknown model %s\n", model.c_str());
   return 2;
 }
 

@@ -19,8 +19,9 @@ inline double microseconds(std::function<void()> const& act) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The fastest of `repeats` interleaved timings (what else runs on the machine only ever adds), each after one that is
-/// not counted: a solver finds its data in the cache, as it does within a run.
+/// Smallest of `repeats` interleaved timings of each act [µs]. An act is a pair of functions: a preparation, and the
+/// function that is timed. An untimed call precedes each timed call, so that the data are in the cache as within a run.
+/// The minimum is used because other processes on the machine only increase times.
 inline std::vector<double> fastest(std::vector<std::pair<std::function<void()>, std::function<void()>>> const& acts,
                                    int repeats) {
   std::vector<double> times(acts.size(), 1e30);
@@ -34,7 +35,7 @@ inline std::vector<double> fastest(std::vector<std::pair<std::function<void()>, 
   return times;
 }
 
-/// Flops per µs of c −= aᵀ b with Eigen's 6×6 matrices that stay in the cache.
+/// Flops per µs of c −= aᵀ b with 6×6 matrices of Eigen that remain in the cache.
 inline double eigen_rate() {
   std::vector<Mat<double, 6, 6>> a(16, Mat<double, 6, 6>::Random()), c(16, Mat<double, 6, 6>::Zero());
   constexpr int rounds = 200;

@@ -1,8 +1,8 @@
-// Joint coordinates of a tree by articulated bodies, on a chain that falls from a horizontal start: links of 0.1 m
-// and 1 kg on pins. One call (q, q˙) → q¨; a quarter of a step of Runge–Kutta 4; a step of generalised-α and its
-// iterations; and the work that a second takes to an accuracy of the tip. If Simbody is found (Debian:
-// libsimbody-dev), the chain is also solved by Simbody in the same run; ratios are the time of polybody over the time
-// of Simbody. Processor time, the fastest of several runs.
+// Joint coordinates of a tree by articulated bodies, on a chain that falls from a horizontal start: links of 0.1 m and
+// 1 kg on pins. The program measures one call (q, q˙) → q¨, a quarter of a step of Runge–Kutta 4, a step of
+// generalised-α and its iterations, and the processor time of one second for a given error of the tip. If Simbody is
+// found (Debian: libsimbody-dev), the chain is also solved by Simbody in the same run; ratios are the time of polybody
+// over the time of Simbody. All times are processor times, the fastest of several runs.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -66,7 +66,7 @@ Call call(int links) {
   return {taken, x.a[links - 1]};
 }
 
-/// A step of an integrator of 1 ms [s], and its mean count of iterations.
+/// Time of a step of 1 ms [s], and mean number of iterations of a step.
 template <class I>
 std::pair<double, double> step(int links, I const& integrator) {
   Chain const model = chain(links);
@@ -80,7 +80,8 @@ std::pair<double, double> step(int links, I const& integrator) {
   return {taken / steps, iterations};
 }
 
-/// Time over error, and the time at which a curve, by logarithms, has this error; zero where it does not reach it.
+/// Time at which a curve of time over error has this error, interpolated in logarithms; zero if the curve does not
+/// reach the error.
 double time_at(Curve const& curve, double error) {
   for (std::size_t i = 0; i + 1 < curve.x.size(); ++i) {
     double const a = std::log(curve.x[i]), b = std::log(curve.x[i + 1]), at = std::log(error);

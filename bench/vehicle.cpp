@@ -1,8 +1,9 @@
-// Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4): processor time
-// per second of driving, mean, 99.9 % quantile and maximum of a step, counts of Newton's method, and the time of each
-// part of a step with the flop limit of its factorisation. bench_vehicle [--links X] [--pins Y] [--until S] [--speed
-// W]. With --causes 1: iterations and factorisations of steps by the number of contacts that begin or end. With
-// --variants 1: possible gain of eight vehicles in SIMD lanes, with driving speeds that differ by up to 1 %.
+// Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4): processor time per
+// second of driving, mean, 99.9 % quantile and maximum of a step, counts of Newton's method, and the time of each part
+// of a step with the flop limit of its factorisation. Options: bench_vehicle [--links X] [--pins Y] [--until S]
+// [--speed W]. With --causes 1: iterations and factorisations of steps by the number of contacts that begin or end.
+// With --variants 1: possible gain of eight vehicles in the lanes of SIMD vectors, with speeds that differ by up to one
+// percent.
 #include <ctime>
 
 #include <cstdio>
@@ -92,7 +93,8 @@ void measure(Options const& o, Combination const& combination) {
   std::fflush(stdout);
 }
 
-/// Points of contact that press, each by its track, link, opponent and number among theirs.
+/// Active contact points in ascending order. The number of a contact point is a hash of its track, link and contact
+/// partner.
 std::vector<std::size_t> touching(AnyVehicle const& vehicle, System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);
   std::vector<std::size_t> points;
@@ -106,7 +108,7 @@ std::vector<std::size_t> touching(AnyVehicle const& vehicle, System& system, Sta
   return points;
 }
 
-/// Iterations and factorisations of steps by the number of contacts that come or go within them: none, some, many.
+/// Prints iterations and factorisations of steps by the number of contacts that begin or end within the step.
 void causes(Options const& o, Combination const& combination) {
   Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
   AnyModel const& model = built.vehicle.model;
@@ -116,7 +118,7 @@ void causes(Options const& o, Combination const& combination) {
   RunSystems const systems = model.systems_of<GeneralisedAlpha>();
   System& full = systems.full ? *systems.full : *systems.stepped;
   struct Class {
-    std::size_t most;  // contacts that come or go
+    std::size_t most;  // greatest number of contacts that begin or end
     double steps = 0.0, iterations = 0.0, factorisations = 0.0;
   };
   std::vector<Class> classes{{0}, {2}, {5}, {10}, {std::size_t(-1)}};
@@ -195,7 +197,11 @@ int main(int argc, char** argv) {
     else if (name == "--variants")
       of_variants = value != "0";
     else
-      return std::printf("%s is no option.\n", name.c_str()), 1;
+      return std::printf(
+                 "bench_vehicle: unknown option %s. The options are --links, --pins, --until, --speed, --causes and "
+                 "--variants.\n",
+                 name.c_str()),
+             1;
   }
   auto const each = [&](auto&& f) {
     for (std::size_t k = 0; k < all_links.size(); ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Vehicles of any formulation, to be driven by the case of tracked_vehicle.hpp.
+// Functions that create vehicles of any formulation for the case in tracked_vehicle.hpp.
 #include "m113/vehicle.hpp"
 #include "m113/visual.hpp"
 #include "tracked_vehicle.hpp"
@@ -12,7 +12,7 @@ auto made_vehicle(Policy const& pins, VehicleParts const& parts, Links const& li
                                                                          parts.ground, links);
 }
 
-// \param by the integrators that may step it
+// Erases the types of links and pins of a vehicle. \param by list of the integrators that the vehicle's model supports
 template <class V, class... Is>
 AnyVehicle any_vehicle(std::shared_ptr<V const> const& vehicle, SteppedBy<Is...> by) {
   auto const& side = vehicle->side(m113::Side::left);

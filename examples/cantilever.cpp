@@ -81,7 +81,8 @@ void curvatures(Options const& o, Lrvf const& beam, State const& x) {
   say("curvature", "largest on the position mesh", straight, "1/m");
 }
 
-// Figures 2.9 and 2.10: a constant moment on a beam at rest, which therefore swings about the static shape.
+// Figures 2.9 and 2.10: a constant moment acts on a beam that is straight and at rest at the start. The beam oscillates
+// about its static shape.
 template <class B>
 void tip_moment(Options const& o) {
   Cantilever<B> beam(bar(low, o.density), o.elements, o.moment);
@@ -116,7 +117,7 @@ void tip_moment(Options const& o) {
   if constexpr (std::is_same_v<B, planar::Lrvf>) curvatures(o, beam, x);
 }
 
-// M = 2 pi EI/L closes the beam to a circle, exactly [Bernoulli-Euler]. Statics, one formulation.
+// Static solution in one formulation. The moment M = 2 pi EI/L closes a Bernoulli-Euler beam to an exact circle.
 template <class B>
 double roll_up(Options const& o, Figure& shapes, std::string const& name, Index elements, int colour) {
   double const full = 2.0 * std::numbers::pi * low.EI / length;
@@ -194,14 +195,15 @@ int main(int argc, char** argv) {
   line.one_of("--case", &o.which, {"all", "moment", "roll-up", "compare"}, "what to run");
   line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering"},
               "formulation of the case 'moment'; only lrvf has two meshes");
-  line.positive("--elements", &o.elements, "elements along the beam");
+  line.positive("--elements", &o.elements, "number of elements of the beam");
   line.positive("--step", &o.step, "time step [s]");
   line.positive("--until", &o.end_time, "end of the run [s]");
   line.option("--moment", &o.moment, "moment at the tip [N m]");
-  line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
+  line.positive("--density", &o.density, "density, which the thesis does not give [kg/m^3]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
-  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
-  line.option("--film", &o.film, "film of the case 'compare'; with a viewer, film.html in the folder --out");
+  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
+  line.option("--film", &o.film,
+              "file for a film of the case 'compare'; default with --viewer: film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";

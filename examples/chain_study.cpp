@@ -1,7 +1,8 @@
-// Work–precision map of a chain of rods on penalty pins, released from the horizontal: every combination of pin
-// stiffness, step and integrator. The error is the distance of the end of the chain from a chain with ideal pins and
-// a fine step. The study can be interrupted and continued, on threads or on MPI ranks: chain_study --threads 2 --out
-// out/chain_study mpirun -np 2 chain_study --out out/chain_study
+// Work-precision map of a chain of rods on penalty pins, released from the horizontal: every combination of pin
+// stiffness, step and integrator. The error is the distance between the end of the chain and the end of a chain with
+// ideal pins and a fine step. The study can be interrupted and continued, on threads or on MPI ranks:
+//   chain_study --threads 2 --out out/chain_study
+//   mpirun -np 2 chain_study --out out/chain_study
 #include <iostream>
 #include <polybody/polybody.hpp>
 #include <polybody/study.hpp>
@@ -58,7 +59,7 @@ std::array<double, 2> error_and_cost(Options const& o, Vec3 const& exact, Point 
   return {(end.place - exact).norm(), end.seconds};
 }
 
-// From below the least to above the greatest, for axes that all panels share.
+// Powers of ten below the least and above the greatest value, as limits of axes that all panels share.
 std::array<double, 2> decades(std::vector<double> const& x) {
   auto const [least, most] = std::ranges::minmax(x);
   return {std::pow(10.0, std::floor(std::log10(least))), std::pow(10.0, std::floor(std::log10(most)) + 1.0)};
@@ -108,14 +109,16 @@ void run(Options const& o, Ranks const& ranks) {
 int main(int argc, char** argv) {
   Ranks const ranks(argc, argv);
   Options o;
-  CommandLine line{"A study: penalty pins of a chain, their stiffness, step and integrator against ideal pins."};
-  line.between("--links", &o.links, 1, 100, "rods of the chain");
-  line.between("--levels", &o.levels, 2, 9, "stiffnesses, and steps");
+  CommandLine line{
+      "Study of a chain: error of penalty pins for several stiffnesses, steps and integrators, compared with ideal "
+      "pins."};
+  line.between("--links", &o.links, 1, 100, "number of rods of the chain");
+  line.between("--levels", &o.levels, 2, 9, "number of stiffnesses and of steps");
   line.positive("--until", &o.end_time, "end of the runs [s]");
-  line.between("--threads", &o.threads, 1, 4096, "that work on points");
+  line.between("--threads", &o.threads, 1, 4096, "number of threads that compute points");
   line.option("--out", &o.out, "folder of the record, the tables and the pictures");
   line.flag("--retry", &o.retry, "computes the failed points again");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {
     run(o, ranks);

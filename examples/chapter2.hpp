@@ -3,7 +3,8 @@
 // prescribed, and a clamped beam under a tip moment. Shared by the examples and their tests.
 //
 // Table 2.1 gives stiffnesses in the ratio EA : GA : EI = 1 : 1/2 : 1/12, those of a section of 1 m x 1 m without
-// lateral contraction. The mass is not printed; it follows from the section and a density that is an option.
+// lateral contraction. The thesis does not give the mass. It follows from the section and from the density, which is an
+// option.
 #include <polybody/polybody.hpp>
 
 namespace chapter2 {
@@ -12,7 +13,8 @@ using namespace polybody;
 using planar::EngineeringStrain;
 using planar::GreenStrain;
 
-// Table 2.1, named by the figures they belong to (the printed heads are one figure early).
+// Stiffnesses of Table 2.1 [N], [N], [N m^2] with the names of their figures. The heads in the printed table name the
+// preceding figures.
 struct Stiffness {
   std::string name;
   double EA, GA, EI;
@@ -34,8 +36,8 @@ inline Bar bar(Stiffness const& s, double density) {
                                     .rotary_inertia = density * area / 12.0}};
 }
 
-// The arm turns about the origin: a pin, and the angle of its first section prescribed.
-// An axial force of constant size may follow the tip.
+// Arm on a pin at the origin. The angle of its first section is prescribed. An axial follower force of constant
+// magnitude may act at the tip.
 template <class B, class P = Constraint>
 struct RobotArm {
   using Pin = Joint<planar::Revolute, P>;
@@ -56,7 +58,7 @@ struct RobotArm {
   }
 };
 
-// The beam is clamped at the origin and a moment about z acts at its tip.
+// Beam that is clamped at the origin, with a moment about z [N m] at its tip.
 template <class B>
 struct Cantilever {
   using Clamp = Joint<planar::Weld, Constraint>;

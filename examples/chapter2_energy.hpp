@@ -1,20 +1,21 @@
 #pragma once
-// The energy of the arm once its drive stands still (thesis 2.5.4): the pin and the drive do no work then, so that
-// what changes is the error of the time integrator. Shared by the example and its test.
+// Energy of the arm after its drive has stopped (thesis 2.5.4). Pin and drive then do no work, so any change of the
+// energy is an error of the time integrator. Shared by the example and its test.
 #include "chapter2.hpp"
 
 namespace chapter2 {
 
-// Total energy over a window after the ramp, of its amount at the first step after the ramp.
+// Change of the total energy E in a time window after the ramp, relative to its value E0 at the first step after the
+// ramp.
 struct EnergyDrift {
-  double start = 0.0;       // energy at the start of the window [J]
+  double start = 0.0;       // energy E0 at the start of the window [J]
   double largest = 0.0;     // largest |E/E0 - 1| in the window
-  double end = 0.0;         // E/E0 - 1 at its end
+  double end = 0.0;         // E/E0 - 1 at the end of the window
   std::vector<double> t;    // times of the window [s]
-  std::vector<double> off;  // E/E0 - 1
+  std::vector<double> off;  // E/E0 - 1 at these times
 };
 
-// The arm is driven by `angle` in `ramp` seconds and left alone for `window` seconds [s].
+// Data of a run: the drive rotates the arm by `angle` within the time `ramp` and stands still for the time `window`.
 struct DriftRun {
   Stiffness stiffness = medium;
   double density = 7850.0;  // [kg/m^3]

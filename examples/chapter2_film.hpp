@@ -1,6 +1,6 @@
 #pragma once
-// The bars of Chapter 2 as a film: each formulation a scene, with the axial stress of a section of 1 m x 1 m, the
-// reaction at the support, and the tip's place as histories.
+// Films of the bars of Chapter 2, with one scene for each formulation. A scene shows histories of the tip's position,
+// the reaction at the support, and the axial stress of a section of 1 m x 1 m.
 #include <polybody/io/film.hpp>
 #include <polybody/io/film_forces.hpp>
 
@@ -16,7 +16,7 @@ inline FilmOptions film_options(std::filesystem::path const& viewer, std::string
           .floor = FilmFloor::behind};
 }
 
-// The bar with the section and the material that its constants come from.
+// Bar with the section and the material from which the constants of s follow.
 inline Bar visible_bar(Stiffness const& s, double density) {
   return {.length = length,
           .section = Rectangle{.height = 1.0, .width = 1.0},

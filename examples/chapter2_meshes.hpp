@@ -1,26 +1,27 @@
 #pragma once
-// Distance of the two meshes of the planar Lrvf and its causes (thesis 2.5.1, 2.7). The examples and their tests use
-// it.
+// Distance between the position mesh and the rotation mesh of the planar Lrvf, and its causes (thesis 2.5.1, 2.7).
+// Shared by the examples and their tests.
 //
 // Consider an element with the relative rotation phi of its ends, the strains (eps, gamma) and the axes t1, t2 of its
-// middle. The position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations imply by l s t1,
-// s = sin(phi/2)/(phi/2). Hence the distance of a node is, exactly,
-//   sum l (eps t1 + gamma t2)  +  sum l (1 - s) t1  over the elements before it:
-// the strains of the strain energy, and an interpolation error of second order in l.
+// middle. Over the element, the position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations
+// imply advances by l s t1 with s = sin(phi/2)/(phi/2). Hence the distance between the two positions of a node is
+// exactly
+//   sum l (eps t1 + gamma t2)  +  sum l (1 - s) t1  over the elements before the node.
+// The first sum is due to the strains. The second sum is an interpolation error of second order in l.
 #include "chapter2.hpp"
 
 namespace chapter2 {
 
-// The rigid displacement x -> shift + R(turn) x that brings points nearest to others, in the mean of the squares.
+// Rigid displacement x -> shift + R(turn) x of one set of points with the least mean square distance from another set.
 struct RigidFit {
   double turn = 0.0;          // [rad]
   Vec2 shift = Vec2::Zero();  // [m]
-  double apart = 0.0;         // rms distance as the points are [m]
+  double apart = 0.0;         // rms distance before the displacement [m]
   double left = 0.0;          // rms distance after the displacement [m]
 };
 
-// Planar Procrustes: with both sets about their means, tan(turn) = sum(from x to)/sum(from . to).
-// Throws InvalidInput unless both have the same number of points, and at least one.
+// Planar Procrustes problem: with both sets relative to their means, tan(turn) = sum(from x to)/sum(from . to). Throws
+// InvalidInput unless both sets have the same number of points, and at least one.
 inline RigidFit rigid_fit(std::vector<Vec2> const& from, std::vector<Vec2> const& to) {
   if (from.empty() || from.size() != to.size())
     throw InvalidInput("rigid_fit: both sets need the same number of points, and at least one.");
@@ -51,12 +52,12 @@ inline RigidFit rigid_fit(std::vector<Vec2> const& from, std::vector<Vec2> const
 // The two meshes of one state. A gap is the position of a node on the position mesh minus its position on the
 // rotation mesh.
 struct Apart {
-  double gap = 0.0;                   // at the node where they are farthest apart [m]
-  Vec2 strain = Vec2::Zero();         // the part of it that the strains make [m]
-  Vec2 interpolation = Vec2::Zero();  // and the rest, of the interpolation [m]
-  double element = 0.0;  // difference of an element's two chords, at most [m]: no rigid displacement takes it away
-  double bow = 0.0;      // height of an element's implied arc over its chord, at most [m]
-  RigidFit rigid;        // of the rotation mesh onto the position mesh, node by node
+  double gap = 0.0;                   // largest gap of all nodes [m]
+  Vec2 strain = Vec2::Zero();         // part of this gap due to the strains [m]
+  Vec2 interpolation = Vec2::Zero();  // part of this gap due to the interpolation [m]
+  double element = 0.0;               // largest difference between the two chord lengths of an element [m]
+  double bow = 0.0;                   // largest height of an element's implied arc above its chord [m]
+  RigidFit rigid;                     // fit of the nodes of the rotation mesh to the nodes of the position mesh
 };
 
 template <class B>
@@ -84,7 +85,7 @@ Apart meshes_apart(B const& beam, std::span<double const> q) {
   return out;
 }
 
-// "  ROW, COLUMN: VALUE UNIT": a number of the page docs/chapter2.md, as tests/long reads it.
+// Prints the line "  ROW, COLUMN: VALUE UNIT". tests/long reads such lines as numbers of docs/chapter2.md.
 inline void say(std::string const& row, char const* column, double value, char const* unit = "") {
   std::printf("  %s, %s: %.6g%s%s\n", row.c_str(), column, value, *unit ? " " : "", unit);
 }

@@ -30,7 +30,8 @@ Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> 
   return c;
 }
 
-// Adds both meshes of a beam (of any other body its one curve) as a pair of lines; the label only once.
+// Adds both meshes of an Lrvf as two curves, or the centre line of another body as one curve. Only the first snapshot
+// has labels.
 template <class M, class B>
 void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> const& handle, double bar_length) {
   bool const first = figure.curves.empty();
@@ -50,7 +51,7 @@ void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> 
   }
 }
 
-// Fits ranges and size of a figure of shapes, so that flat ones are still readable on equal axes.
+// Sets the ranges and the size of a figure of shapes, so that flat shapes remain readable on equal axes.
 inline void fit(Figure& figure) {
   double lo[2] = {0.0, 0.0}, hi[2] = {0.0, 0.0};
   for (Curve const& c : figure.curves)
@@ -69,7 +70,7 @@ inline void fit(Figure& figure) {
   figure.height_px = int(std::min(1200.0, 200.0 + 850.0 * tall / wide));
 }
 
-// Histories of a run as one CSV file: the columns share their rows.
+// Writes histories of a run to one CSV file, with one column for each history and one row for each time.
 inline void write_table(std::filesystem::path const& file, std::vector<std::string> const& heads,
                         std::vector<std::vector<double>> const& columns) {
   Csv csv(file, heads);
@@ -86,7 +87,7 @@ inline void draw(Figure const& figure, std::filesystem::path const& stem, bool p
   std::cout << "  " << stem.string() << (drawn == DrawResult::png ? ".png" : ".gp") << '\n';
 }
 
-// The table of a comparison on the terminal, and all of it as files in a folder of its own.
+// Prints the table of a comparison, and writes the files of its report to `folder`.
 inline void report(Comparison const& c, std::filesystem::path const& folder, bool plot) {
   std::cout << c << '\n';
   for (std::filesystem::path const& file : write_report(c, folder, plot)) std::cout << "  " << file.string() << '\n';

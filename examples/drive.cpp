@@ -1,7 +1,9 @@
-// The vehicle in real time, driven by keys or by a file of orders. drive arrows or w a s d, x straight on, space
-// stops, q ends drive --links ancf --drive ../examples/drive/eight.csv drive --record mine.csv keeps what was
-// ordered, for --drive At the end it prints the number of late frames, the times of the steps and the counts of
-// Newton's method.
+// The vehicle in real time, driven by keys or by a file of orders:
+//   drive                                                   arrows or w a s d; x: straight on; space: stop; q: end
+//   drive --links ancf --drive ../examples/drive/eight.csv
+//   drive --record mine.csv                                 writes the orders to a file for --drive
+// At the end the program prints the number of late frames, the computing times of the steps and the counts of Newton's
+// method.
 #include <cstdio>
 #include <iostream>
 #include <numeric>
@@ -38,7 +40,7 @@ class Pilot {
     else
       orders_ = read_orders(o.drive);
   }
-  // Gives the orders of time t. False where the drive is over.
+  // Passes the orders up to time t [s] to the drives. Returns false if the driver has pressed q.
   bool steer(double t) {
     if (!keyboard_) {
       for (; next_ < orders_.size() && orders_[next_].t <= t; ++next_)
@@ -60,7 +62,7 @@ class Pilot {
   std::vector<Order> const& given() const { return given_; }
 
  private:
-  static constexpr double fastest = 40.0;  // of the sprockets [rad/s]
+  static constexpr double fastest = 40.0;  // greatest speed of the sprockets [rad/s]
 
   void order(double t, double left, double right) {
     throttles_[0].ask(t, left);
@@ -149,15 +151,16 @@ int main(int argc, char** argv) {
   Options o;
   CommandLine line{"The tracked vehicle in real time, by keys or by a file of orders."};
   line.one_of("--links", &o.links, {"rigid", "ancf", "ffr"}, "formulation of the tracks");
-  line.option("--drive", &o.drive, "file of orders, lines of t,left,right [s, rad/s]; if omitted, keys are read");
+  line.option("--drive", &o.drive, "file of orders with lines t,left,right [s, rad/s]; if omitted, keys are read");
   line.option("--record", &o.record, "file to which the orders are written");
-  line.flag("--bumps", &o.bumps, "a bump of 10 cm at 8 m");
+  line.flag("--bumps", &o.bumps, "ground with a bump of 10 cm at x = 8 m");
   line.flag("!--no-clock", &o.clock, "run as fast as the processor permits, not in real time");
-  line.positive("--until", &o.end_time, "end [s]");
-  line.positive("--step", &o.step, "[s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
+  line.positive("--step", &o.step, "time step [s]");
   line.positive("--frame", &o.frame, "time between readings of the clock and of the keys [s]");
   line.positive("--tolerance", &o.tolerance, "tolerance of Newton's method");
-  line.not_negative("--budget", &o.budget, "iterations of a step, a factorisation counting as three; 0: no bound");
+  line.not_negative("--budget", &o.budget,
+                    "limit of Newton iterations per step, with a factorisation counted as three; 0: no limit");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius of generalised-alpha at infinity");
   line.positive("--threads", &o.threads, "number of threads that compute one step");
   if (auto const code = line.parse(argc, argv)) return *code;

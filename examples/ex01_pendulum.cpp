@@ -1,4 +1,4 @@
-// The user's page: a rod on a pin. Prints time, energy drift [J] and the gap of the pin [m] at the end.
+// First program: a rod on a pin. Prints time [s], energy drift [J] and constraint violation of the pin [m] at the end.
 #include <iostream>
 #include <polybody/polybody.hpp>
 using namespace polybody;

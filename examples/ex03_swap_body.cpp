@@ -22,18 +22,18 @@ Vec3 tip_at_half_a_second(B const& body) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
   simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 0.5, .step = 1e-3}).run();
-  return position(model, x, rod.at(1.0));  // at(s) is the same material point in all of them
+  return position(model, x, rod.at(1.0));  // at(s) is the same material point in all formulations
 }
 
 int main() {
-  // 3. The choice.
+  // 3. The body formulations.
   Vec3 const rigid = tip_at_half_a_second(planar::Rigid::from(bar));
   Vec3 const ancf = tip_at_half_a_second(planar::AncfCable<>::from(bar, 8));
   Vec3 const lrvf = tip_at_half_a_second(planar::Lrvf::from(bar, 32));
   std::printf("rigid  tip at 0.5 s: (%.4f, %.4f)\n", rigid[0], rigid[1]);
   std::printf("ANCF   tip at 0.5 s: (%.4f, %.4f)\n", ancf[0], ancf[1]);
   std::printf("LRVF   tip at 0.5 s: (%.4f, %.4f)\n", lrvf[0], lrvf[1]);
-  // 4. The converged flexible answer is (-0.0933, -0.9957); the rigid one is known too.
+  // 4. References: the converged flexible solution (-0.0933, -0.9957), and the rigid solution.
   Vec3 const flexible(-0.093346, -0.995676, 0.0), stiff(-0.090229, -0.995921, 0.0);
   bool const good = (ancf - flexible).norm() < 5e-4 && (lrvf - flexible).norm() < 5e-4 && (rigid - stiff).norm() < 5e-4;
   return good ? 0 : 1;

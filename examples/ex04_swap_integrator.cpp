@@ -1,6 +1,7 @@
 // Lesson: the integrator is one argument. One double pendulum with an implicit method and with explicit methods that
-// are stabilised by projection. Sample run: GeneralisedAlpha 2000 steps tip (-1.4448, -1.3218) energy error 3e-05 J
-// ...
+// are stabilised by projection. Sample run:
+//   GeneralisedAlpha     2000 steps   tip (-1.4448, -1.3218)   energy error 3e-05 J
+//   ...
 #include <polybody/polybody.hpp>
 
 #include <cstdio>
@@ -16,7 +17,8 @@ bool run(I const& integrator, double step) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), first.at({-1.0, 0.0}), "upper pin");
   model.connect(Pin{}, first.at({0.0, 0.0}), second.at({-1.0, 0.0}), "lower pin");
   State x = model.reference_state();
-  // 2. An explicit integrator without stabilisation, RungeKutta4<>, would not compile here: the pins add rows.
+  // 2. An explicit integrator without stabilisation, RungeKutta4<>, would not compile here, because the pins add
+  // constraint equations.
   auto simulation = simulate(model, x, integrator, {.end_time = 1.0, .step = step});
   RunReport const& report = simulation.run();
   Vec3 const tip = position(model, x, second.at({0.0, 0.0}));

@@ -9,7 +9,7 @@
 using namespace polybody;
 
 int main() {
-  // 1. The second derivative of a field, by dual numbers of its slope.
+  // 1. The second derivative of a field, from its first derivative with dual numbers.
   double const length = 10.0, amplitude = 1.0, pi = std::numbers::pi;
   auto const slope = [&](int mode, auto const& x) {
     using std::cos;
@@ -36,7 +36,7 @@ int main() {
   }
   // 2. The picture.
   write_panels({fields[0], fields[1], fields[2]}, 3, "ex05_two_fields");
-  // 3. The point of it.
+  // 3. The result.
   std::printf("largest curvature of u1: %.4f 1/m, of u2: %.4f 1/m, ratio %.3f\n", largest[0], largest[1],
               largest[1] / largest[0]);
   return std::abs(largest[1] / largest[0] - 4.0) < 1e-3 ? 0 : 1;

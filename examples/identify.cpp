@@ -1,6 +1,7 @@
-// Identification of the stiffness and damping of a mount from a noisy record of the motion of a flexible arm on it:
-// least squares with the exact derivatives of runs, under four formulations of the arm, with confidence intervals.
-// identify --out out/identify
+// Identification of the stiffness and damping of a mount from a noisy record of the motion of a flexible arm on the
+// mount. The method is least squares with the exact derivatives of runs, under four formulations of the arm, with
+// confidence intervals.
+//   identify --out out/identify
 #include <iostream>
 
 #include "identify/arm.hpp"
@@ -52,7 +53,8 @@ double seconds_of(F&& f) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// Cost of a gradient, in runs of this formulation, and its error, compared with differences of runs.
+// Prints the cost of the exact derivatives in runs of the same formulation, and the errors of finite differences
+// relative to the exact derivatives.
 void print_gradients(std::vector<Candidate> const& candidates, Numbers const& p) {
   std::printf(
       "\na gradient of %zu numbers, in runs; largest error of its columns, relative\n%-8s %10s %10s %18s %18s\n",
@@ -125,7 +127,8 @@ void draw_descent(Options const& o, std::vector<Estimate> const& found, Index va
   write_figure(figure, o.out / "descent", !o.no_plot);
 }
 
-// The points with (p − p̂)ᵀ C⁻¹ (p − p̂) = 5.99 of two numbers, over the true ones: 95 % of both.
+// Ellipse (p − p̂)ᵀ C⁻¹ (p − p̂) = 5.99 of two parameters p, relative to their true values. The ellipse contains both
+// parameters with a probability of 95 %.
 Curve ellipse(Options const& o, Estimate const& e, std::size_t i, std::size_t j) {
   auto const a = Index(i), b = Index(j);
   double const l11 = std::sqrt(e.covariance(a, a)), l21 = e.covariance(b, a) / l11,
@@ -185,12 +188,12 @@ int main(int argc, char** argv) {
   line.positive("--damping", &o.truth[1], "damping of the recorded mount [N s/m]");
   line.positive("--turn-stiffness", &o.truth[2], "rotational stiffness of the recorded mount [N m/rad]");
   line.positive("--turn-damping", &o.truth[3], "rotational damping of the recorded mount [N m s/rad]");
-  line.positive("--noise", &o.noise, "deviation of the record's noise [m]");
-  line.between("--off", &o.off, 1.0, 5.0, "factor by which the start is off the numbers that were recorded");
+  line.positive("--noise", &o.noise, "standard deviation of the noise of the record [m]");
+  line.between("--off", &o.off, 1.0, 5.0, "factor between the initial values and the true values");
   line.option("--seed", &o.seed, "seed of the noise");
   line.positive("--until", &o.experiment.end_time, "end of the record [s]");
   line.option("--out", &o.out, "folder of the pictures");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {
     run(o);

@@ -1,6 +1,6 @@
 // Design of the lightest link that rotates a mass by 90° with a bounded stress, with the exact derivatives of runs,
-// under four formulations of the link. Each design is then evaluated under the other formulations. lighter_link --out
-// out/lighter_link
+// under four formulations of the link. Each design is then evaluated under the other formulations.
+//   lighter_link --out out/lighter_link
 #include <iostream>
 
 #include "lighter_link/search.hpp"
@@ -36,7 +36,7 @@ void print_designs(std::vector<Lightest> const& found) {
   for (Lightest const& d : found) std::printf("%-8s %.2f %%\n", d.name.c_str(), 100.0 * (d.aggregate / d.stress - 1.0));
 }
 
-// The largest stress of each design under each formulation, over what is allowed.
+// Prints the largest stress of each design under each formulation, relative to the allowed stress.
 void print_crosswise(std::vector<Candidate> const& candidates, std::vector<Lightest> const& found) {
   std::printf("\nlargest stress, over what is allowed, of the design of\n%-14s", "under");
   for (Lightest const& d : found) std::printf(" %8s", d.name.c_str());
@@ -89,7 +89,7 @@ void draw_designs(Options const& o, std::vector<Lightest> const& found) {
   write_figure(figure, o.out / "designs", !o.no_plot);
 }
 
-// The stress at the root of the first and of the last design, under all formulations.
+// Draws the stress at the root of the first and of the last design, under all formulations.
 void draw_stress(Options const& o, std::vector<Candidate> const& candidates, std::vector<Lightest> const& found) {
   std::vector<Figure> panels;
   for (Lightest const* const d : {&found.front(), &found.back()}) {
@@ -132,16 +132,16 @@ int main(int argc, char** argv) {
   Options o;
   double megapascals = 1e-6 * o.task.allowed;
   std::ptrdiff_t sections = std::ptrdiff_t(o.task.sections);
-  CommandLine line{"The lightest link that swings a mass, its stress bounded, under four formulations."};
-  line.positive("--allowed", &megapascals, "stress [N/mm^2]");
+  CommandLine line{"The lightest link that rotates a mass with a bounded stress, under four formulations."};
+  line.positive("--allowed", &megapascals, "allowed stress [N/mm^2]");
   line.positive("--payload", &o.task.payload, "mass at the link's end [kg]");
   line.positive("--time", &o.task.turn.time, "time constant of the turn, about a quarter of its duration [s]");
   line.positive("--sharpness", &o.aggregate.sharpness,
-                "of the aggregate of all stresses; the sharper, the nearer to the largest");
-  line.between("--sections", &sections, 1, 8, "of the link, each with its height");
+                "sharpness of the aggregate of all stresses; a greater value brings it nearer to the largest stress");
+  line.between("--sections", &sections, 1, 8, "number of sections of the link, each with its own height");
   line.positive("--step", &o.task.step, "time step [s]");
   line.option("--out", &o.out, "folder of the pictures");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   o.task.allowed = 1e6 * megapascals;
   o.task.sections = std::size_t(sections);

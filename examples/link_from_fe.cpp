@@ -1,8 +1,8 @@
-// A body from an independent finite element program: a steel link, a plate with two holes, whose mass and stiffness
-// matrices CalculiX wrote (link_from_fe/make_matrices.sh). Prints its mass properties and frequencies beside CalculiX's
-// own, and lets it swing about a node beside one hole, flexible and rigid.
+// Body from an independent finite element program: a steel link, which is a plate with two holes. CalculiX wrote its
+// mass and stiffness matrices (link_from_fe/make_matrices.sh). The program prints the mass properties and frequencies
+// of the link and those that CalculiX computed. Then a flexible and a rigid link swing about a node at one hole.
 //   link_from_fe --until 1
-// Of a sample run:
+// Part of a sample run:
 //   mass [kg]              1.0234856       1.0234860
 //   free frequencies [Hz]  free modes        CalculiX  Craig-Bampton
 //     1                      4356.5182       4356.5180      4357.2652
@@ -35,7 +35,7 @@ struct Options {
 struct Reference {
   double mass = 0.0;
   Vec3 inertia = Vec3::Zero();
-  std::vector<double> frequencies;  ///< [rad/s]; six are rigid
+  std::vector<double> frequencies;  ///< angular frequencies [rad/s]; the first six are of rigid motions
 };
 
 Reference read_reference(std::string const& file) {
@@ -56,7 +56,7 @@ Index nearest_node(Structure const& s, Vec3 const& r) {
   return Index(std::min_element(s.nodes.begin(), s.nodes.end(), closer) - s.nodes.begin());
 }
 
-/// Frequencies [rad/s] of a free body in mean axes.
+/// Angular frequencies of a free body in mean axes [rad/s].
 std::vector<double> frequencies(Ffr const& body) {
   std::vector<double> omega;
   for (Index i = 0; i < body.deformations(); ++i)
@@ -64,8 +64,8 @@ std::vector<double> frequencies(Ffr const& body) {
   return omega;
 }
 
-/// Positions of the point `end` at tenths of the time. The body hangs on the point `pin` and starts horizontally from
-/// rest.
+/// Positions of the point `end` at tenths of the end time [m]. The body is pinned at its point `pin`, at the world
+/// point `at`, and starts horizontally from rest.
 template <class B, class Point>
 std::vector<Vec3> swing(B const& body, Point const& pin, Point const& end, Vec3 const& at, Options const& o) {
   Model<Bodies<B>, Joints<Hinge>> model{Gravity{0, -9.81, 0}};
@@ -83,8 +83,8 @@ void run(Options const& o) {
   Structure const s = read_structure(base + "mass.mtx", base + "stiffness.mtx", base + "nodes.txt");
   Reference const calculix = read_reference(base + "reference.txt");
 
-  // 1. The body: static shapes of four nodes at each hole, and modes between them. The frame follows the mean motion,
-  // as nodes without rotations cannot hold it.
+  // 1. The body, with the static shapes of four nodes at each hole and fixed-interface modes. The floating frame
+  // follows the mean motion, because nodes without rotations cannot carry a frame.
   double const centre = 0.05, radius = 0.0125;
   std::vector<Index> pins;
   for (double const x : {-centre, centre})
@@ -109,7 +109,7 @@ void run(Options const& o) {
     std::printf("  %zu                  %13.4f   %13.4f  %13.4f\n", k + 1, all[k] / turn,
                 calculix.frequencies[6 + k] / turn, reduced[k] / turn);
 
-  // 3. A pendulum about the outer node of the left hole; and a rigid one.
+  // 3. A flexible and a rigid pendulum about the outer node of the left hole.
   Vec3 const at = s.nodes[std::size_t(pins[0])], end = s.nodes[std::size_t(pins[5])];
   Rigid<> const rigid(i.mass,
                       i.inertia - i.mass * (middle.squaredNorm() * Mat3::Identity() - middle * middle.transpose()),
@@ -128,10 +128,11 @@ void run(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CommandLine line{"A steel link from CalculiX's matrices: mass, frequencies, and a pendulum beside a rigid one"};
+  CommandLine line{
+      "Steel link from matrices of CalculiX: mass, frequencies, and motion as a flexible and as a rigid pendulum"};
   line.option("--files", &o.files,
               "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt");
-  line.not_negative("--modes", &o.modes, "modes between the holes");
+  line.not_negative("--modes", &o.modes, "number of fixed-interface modes");
   line.positive("--until", &o.end_time, "end of the run [s]");
   line.positive("--step", &o.step, "time step [s]");
   if (auto const code = line.parse(argc, argv)) return *code;

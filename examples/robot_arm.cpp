@@ -28,7 +28,7 @@ struct Options {
   bool no_plot = false;
 };
 
-// One repositioning: a snapshot every second while the arm is driven.
+// Prescribed rotation of the arm, with a snapshot every second.
 struct Case {
   std::string name, title, file;
   Stiffness stiffness;
@@ -89,7 +89,7 @@ struct MeshWatch {
     say(of.name, "rotation mesh", implied, "m");
     if (of.axial_force != 0.0) say(of.name, "static position mesh", static_length(), "m");
   }
-  // Length of the arm under this force at rest.
+  // Length of the position mesh in static equilibrium under the axial force [m].
   double static_length() const {
     RobotArm<planar::Lrvf> arm(bar(of.stiffness, 1.0), 10, of.ramp, of.axial_force);
     State x = arm.model.reference_state();
@@ -189,7 +189,7 @@ void comparison(Options const& o) {
   if (film) film->write(o.film);
 }
 
-// One formulation by one integrator, once the drive stands still.
+// Energy drift of one formulation with one integrator after the drive has stopped.
 template <class B, class I>
 void drift(Options const& o, Figure& figure, std::string const& name, I const& integrator, double step) {
   EnergyDrift const d =
@@ -240,17 +240,18 @@ int main(int argc, char** argv) {
               "what to run");
   line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering", "rigid"},
               "formulation of the snapshots; only lrvf has two meshes");
-  line.positive("--elements", &o.elements, "elements along the arm");
+  line.positive("--elements", &o.elements, "number of elements of the arm");
   line.positive("--step", &o.step, "time step [s]");
   line.not_negative("--until", &o.end_time, "end of the run [s]; 0: the end of the ramp");
-  line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
-  line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
+  line.positive("--density", &o.density, "density, which the thesis does not give [kg/m^3]");
+  line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, which the thesis does not give [s]");
   line.positive("--stiffer", &o.stiffer,
-                "factor on EA and GA of the snapshots; a large one is the constraint against stretch and shear");
-  line.positive("--window", &o.window, "seconds of the case 'energy' after the ramp [s]");
+                "factor of EA and GA in the snapshots; a large factor prevents stretch and shear");
+  line.positive("--window", &o.window, "duration of the case 'energy' after the ramp [s]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
-  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
-  line.option("--film", &o.film, "film of the case 'compare'; with a viewer, film.html in the folder --out");
+  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
+  line.option("--film", &o.film,
+              "file for a film of the case 'compare'; default with --viewer: film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";

@@ -1,5 +1,5 @@
-// Stress of a track's link (Chapter 4, Figures 4.3 to 4.12): after a run of rigid links, decoupled, beside runs of
-// flexible links.
+// Stress of a track link (Chapter 4, Figures 4.3 to 4.12): decoupled, after a run with rigid links, and coupled, in
+// runs with flexible links.
 //   track_stress --links ffr --speed 80
 //   track_stress --links ffr --pins recursive --turn curve
 //   track_stress --compare
@@ -22,14 +22,15 @@ using namespace chapter4;
 
 namespace {
 
-// Runs that several figures share are made once.
+// Stores runs that several figures share.
 class Cache {
  public:
   explicit Cache(Options const& o) : options_(o) {}
   bool has(double speed) const {
     return std::ranges::any_of(runs_, [&](auto const& made) { return made.first.first == speed; });
   }
-  // Under the settings asked for; with bands also under those that the thesis does not give.
+  // Runs with the settings of the options. With `bands`, also runs with other values of data that the thesis does not
+  // give.
   std::vector<SettingRuns> const& at(double speed, double end_time) {
     auto const key = std::pair(speed, end_time);
     if (auto const found = runs_.find(key); found != runs_.end()) return found->second;
@@ -47,14 +48,15 @@ class Cache {
   std::map<std::pair<double, double>, std::vector<SettingRuns>> runs_;
 };
 
-// The pull of the tensioner in either run of the track, as if both left the idler level: its spring, without its
-// damper.
+// Mean tension of the track from the force of the tensioner's spring, without the damper [N]. Both runs of the track
+// are assumed to leave the idler horizontally.
 double mean_pull(Options const& o, StressRuns const& runs, std::size_t k, double from) {
   double const travel = span_of(runs.times(k), runs.history(k, "idler travel [m]"), from).mean;
   return 0.5 * (o.preload + m113::tensioner.stiffness * travel);
 }
 
-// Decoupled and coupled strain after a low-pass filter, from 8.5 s on, and their largest difference.
+// Prints the decoupled and the coupled strain after a low-pass filter, from the start of the plateau on, and their
+// largest difference.
 void print_strains(Options const& o, StressRuns const& r, double speed) {
   auto const &times = r.times(0), &other_times = r.times(1);
   double const from = plateau(times);
@@ -254,8 +256,8 @@ void figures(Options const& o) {
     if (cache.has(speed)) print_strains(o, runs_at(speed).front().runs, speed);
 }
 
-// Cycles of axial stress, unfiltered, by rainflow; with S³ as damage (m = 3, as details of welds have it) they do as
-// much as all of them would with one equivalent range.
+// Cycles of the unfiltered axial stress by rainflow counting. The damage of a cycle is S³ for the range S (exponent 3
+// of weld details). Cycles that all have the equivalent range cause the same damage.
 void fatigue(Options const& o, StressRuns const& runs) {
   Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s",
            .x_label = "range [MPa]",
@@ -310,10 +312,10 @@ void single(Options const& o) {
 // Results of the run of one combination; strain, force and constraint violation from the plateau on.
 struct Cell {
   double forward = 0.0;  // position at the end [m]
-  double strain = 0.0;   // of the watched link, low pass, in the mean
-  double force = 0.0;    // largest in its front pin [N]
-  double gap = 0.0;      // largest of all pins [m]
-  double energy = 0.0;   // share that is not accounted for
+  double strain = 0.0;   // mean filtered strain of the watched link [1]
+  double force = 0.0;    // largest force in the front pin of this link [N]
+  double gap = 0.0;      // largest constraint violation of all pins [m]
+  double energy = 0.0;   // share of the energy that is not accounted for [1]
   double turning = 0.0;  // mean yaw rate [rad/s]
 };
 
@@ -362,7 +364,7 @@ void show_spreads(Options const& o, std::vector<Cell> const& cells) {
                 1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), all_links.front().c_str());
 }
 
-// Every link on every pin.
+// Runs every combination of links and pins.
 void matrix(Options o) {
   o.audit = true;
   std::printf(
@@ -432,7 +434,8 @@ void compare_terms(Options o) {
   }
 }
 
-// Stress at named nodes of a finite element link: after a run of rigid links, and in one of such links.
+// Stress at named nodes of a finite element link: decoupled, after a run with rigid links, and coupled, in a run with
+// finite element links.
 void surface_stress(Options o) {
   o.surface = true;
   o.contacts = m113::ContactsAct::at_their_places;
@@ -507,45 +510,50 @@ int main(int argc, char** argv) {
   o.files = POLYBODY_TRACK_LINK_FILES;
   std::string contacts = "middle";
   CommandLine line{
-      "Stress of a track's link after a run of rigid links (decoupled) and in runs of flexible ones (Chapter 4)."};
+      "Stress of a track link after a run with rigid links (decoupled) and in runs with flexible links (Chapter 4)."};
   line.one_of("--links", &o.links, all_links, "body formulation of the links");
   line.one_of("--pins", &o.pins, all_pins,
-              "joint policy of the pins; without it linear for ancf, beam and continuum, else constraint");
-  line.not_negative("--elements", &o.elements, "of a flexible link but fe; 0: one, and two of a floating frame");
+              "joint policy of the pins; if omitted, linear for ancf, beam and continuum, otherwise constraint");
+  line.not_negative("--elements", &o.elements,
+                    "elements of a flexible link except fe; 0: one, or two in a floating frame");
   line.one_of("--compare", &o.compare, {"links", "pair", "matrix", "terms", "surface", "ensemble"},
-              "links: all but fe side by side, each on its usual pins; pair: rigid and ancf; matrix: every link on "
+              "links: all links except fe, each on its usual pins; pair: rigid and ancf; matrix: every link on "
               "every pin; terms: ffr without "
-              "parts of its equations; surface: stress in nodes of fe, after a run of rigid links and in its own; "
-              "ensemble: rigid and ancf under settings that the thesis does not give",
+              "parts of its equations; surface: stress at nodes of fe, decoupled and coupled; "
+              "ensemble: rigid and ancf with other values of data that the thesis does not give",
               "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
               "points of a link at which contact forces act: all at its middle, or each at its contact point");
   line.option("--link-files", &o.files, "folder of the finite element link's files");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
-              "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
-  line.flag("--bumps", &o.bumps, "a course with three bumps");
-  line.option("--figure", &o.figure, "4.3 to 4.12 of the thesis, or all");
+              "pivot: the right track runs backwards; curve: the right track runs at 0.8 of the speed");
+  line.flag("--bumps", &o.bumps, "ground with three bumps");
+  line.option("--figure", &o.figure, "figure 4.3 to 4.12 of the thesis, or all");
   line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.positive("--until", &o.end_time, "end of the run [s]");
-  line.positive("--step", &o.step, "[s]");
+  line.positive("--step", &o.step, "time step [s]");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.positive("--cut-off", &o.cut_off, "cut-off frequency of the low pass [Hz]");
   line.one_of("--recovery", &o.recovery, {"static", "vibrating"},
               "computation of the stress after a run of rigid links");
   line.option("--preload", &o.preload, "preload of the tensioners [N]");
-  line.positive("--section", &o.section, "height of a flexible link's section, of that which has a rigid link's mass");
-  line.flag("--bands", &o.bands, "figures with the range over settings that the thesis does not give: 12 runs for one");
-  line.flag("--halve", &o.halve, "compares a run with a run of half the step");
+  line.positive("--section", &o.section,
+                "height of a flexible link's section, divided by the height that gives the mass of a rigid link");
+  line.flag(
+      "--bands", &o.bands,
+      "figures also show the range over other values of data that the thesis does not give: 12 runs instead of one");
+  line.flag("--halve", &o.halve, "compares a run with a run with half the step");
   line.flag("--restart", &o.restart, "checks that a run resumed from a checkpoint ends in the same state, bitwise");
   line.flag("--fatigue", &o.fatigue, "counts cycles of stress by rainflow");
   line.flag("--audit", &o.audit, "prints the energy balance");
   line.flag("!--unwatched", &o.watched, "a track that leaves its sprocket does not end the run");
-  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
-  line.option("--film", &o.film_file,
-              "film of the run, or of rigid links, decoupled, beside the flexible ones of the first comparison; with a "
-              "viewer, film.html in the folder --out");
+  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
+  line.option(
+      "--film", &o.film_file,
+      "file for a film of the run, or of decoupled rigid links and cables of the first comparison; default with "
+      "--viewer: film.html in the folder --out");
   line.option("--out", &o.out, "folder of the results");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (contacts == "places") o.contacts = m113::ContactsAct::at_their_places;
   if (o.turn == "pivot") o.right = -1.0;

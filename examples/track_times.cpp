@@ -25,15 +25,15 @@ struct Options {
 
 double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Largest |eigenvalue| of the motion linearised at x [1/s]: growth of a small change of (q, v) under its own rate, by
-/// power iteration with differences of accelerations, over two passes at a time, as pairs of complex ones turn.
+/// Largest |eigenvalue| of the motion linearised at x [1/s], by power iteration with differences of accelerations. The
+/// result is the mean growth over the last 200 of 400 iterations, because iterates of complex eigenvalues rotate.
 double fastest_rate(System& system, State const& x) {
   ForwardDynamics<> forward(system);
   Index const n = system.velocities();
   VecX place = VecX::Random(n), speed = VecX::Random(n), q = x.q, v = x.v, a = x.a, lambda = x.lambda;
   forward.accelerations(system, {x.q, x.v, x.t}, a, lambda);
   VecX const before = a;
-  double grown = 0.0, scale = 1.0;  // of places beside speeds: 1/ω, so that both are of one size
+  double grown = 0.0, scale = 1.0;  // factor of displacements in the norm, near ω [1/s]
   for (int k = 0; k < 400; ++k) {
     double const size = 1e-4 / (scale * place.norm() + speed.norm());
     system.plus(x.q, size * place, q);
@@ -55,7 +55,7 @@ double fastest_rate(System& system, State const& x) {
 struct Taken {
   System const& system;
   RunReport const& report;
-  double simulated, spent, rate;  // [s], of the processor [s], the fastest rate [1/s]
+  double simulated, spent, rate;  // simulated time [s], processor time [s], fastest rate [1/s]
   Violation worst;
 
   double per_second() const { return spent / simulated; }
@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
   CommandLine line{"The vehicle by coordinate partitioning and Adams-Bashforth-Moulton: processor times of its pins."};
   line.positive("--until", &o.end_time, "end of the runs [s]");
   line.positive("--tolerance", &o.tolerance, "relative and absolute tolerance of all runs");
-  line.positive("--limit", &o.limit, "processor time after which a run is ended [s]");
+  line.positive("--limit", &o.limit, "processor time after which a run ends [s]");
   line.option("--speed", &o.speed, "speed of the sprockets from 0.6 s on [rad/s]");
   line.flag("--names", &o.names, "lists the independent speeds of ideal pins by name");
   if (auto const code = line.parse(argc, argv)) return *code;

@@ -24,10 +24,10 @@ void warn_of_fast_drive(Options o) {
   warn_of_drive(o);
 }
 
-// Runs of one program call; figures that ask for the same share it.
+// Runs of one program call. Figures with the same settings share a run.
 class RunsMade {
  public:
-  // Side by side, in this order.
+  // Returns the runs of `formulations` in this order.
   Runs operator()(Options const& o, std::vector<Pins> const& formulations) {
     Runs all;
     std::vector<Comparison> apart;
@@ -58,7 +58,7 @@ class RunsMade {
     return made_.emplace(key, pins.run(mine)).first->second;
   }
 
-  // Of several formulations a film shows rigid links and flexible ones.
+  // A film of several formulations shows only rigid links on ideal pins and cables.
   static bool filmed(Options const& o, Pins const& pins) {
     bool const alone = o.figure.empty() && o.compare.empty();
     return o.suspension && (alone || pins.name == ideal_pins().name || pins.name == cable_pins().name);
@@ -88,19 +88,20 @@ void table_3_4(Options const& o) {
   count("penalty", penalty_pins(o.penalty).count(o), "1092, 798, 294");
   count("bushing", bushing_pins(o.penalty).count(o), "1092, 798, 294");
   count("ANCF", cable_pins().count(o), "1227, 1060, 167");
-  std::cout << "  The thesis' 1227 ANCF coordinates are 29 bodies of 7 and 128 links of 8; the vehicle has 27 bodies "
-               "beside the links and the ground,\n"
-               "  which makes 28: 1220, 1054, 166. What the 29th is the text does not say.\n";
+  std::cout
+      << "  The 1227 ANCF coordinates of the thesis are those of 29 bodies with 7 and 128 links with 8. This vehicle "
+         "has 28 such bodies,\n"
+         "  including the ground: 1220, 1054, 166. The thesis does not name the 29th body.\n";
 }
 
-// Curves that agree are seen one inside the other: the first is the widest.
+// Makes the first curve the widest and the last the narrowest, so that curves that agree are all visible.
 Figure nested(Figure f) {
   double width = 1.0;
   for (auto curve = f.curves.rbegin(); curve != f.curves.rend(); ++curve, width += 1.0) curve->width = width;
   return f;
 }
 
-// The figures of the chapter that are asked for, and their numbers.
+// Draws the selected figures of the chapter and prints their numbers.
 class Figures {
  public:
   explicit Figures(Options const& o) : o_(o) {}
@@ -178,7 +179,7 @@ class Figures {
     for (std::size_t k = 1; k < all.comparison.runs.size(); ++k) path_line(lines_, all, k);
   }
 
-  // In the watched pin, as they are (a) and filtered (b), with penalties of this stiffness.
+  // Forces in the watched pin, unfiltered (a) and filtered (b), with penalties of this `stiffness` [N/m].
   void forces(double stiffness, std::string const& longitudinal, std::string const& vertical) {
     Runs const r = runs_(o_, {ideal_pins(), penalty_pins(stiffness), cable_pins()});
     for (auto const& [number, output, what] :
@@ -264,38 +265,40 @@ int main(int argc, char** argv) {
   line.one_of("--track", &o.track, {"constraint", "penalty", "bushing", "ancf", "recursive"},
               "formulation of the pins");
   line.one_of("--compare", &o.compare, {"pins", "matrix"},
-              "pins: all formulations, with a report; matrix: says which program drives every link on every pin",
+              "pins: all formulations, with a report; matrix: names the program that runs every link on every pin",
               "pins");
   line.one_of("--figure", &o.figure,
               {"3.6", "3.7", "3.8", "3.9", "3.10", "3.11", "3.12", "3.13", "3.14", "3.15", "table", "all"},
-              "of the thesis, with its numbers, Table 3.4, or all");
+              "figure of the thesis with its numbers, Table 3.4, or all");
   line.positive("--until", &o.end_time, "end of the run [s]");
   line.one_of("--integrator", &o.integrator, {"alpha", "hht", "radau", "adams", "dormand-prince", "rk"},
               "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
               "projected");
-  line.positive("--step", &o.step,
-                "step [s], for adams and dormand-prince the longest; if omitted 0.5 ms, for rk a step at which the "
-                "pins are stable");
+  line.positive(
+      "--step", &o.step,
+      "step [s], for adams and dormand-prince the longest step; if omitted, 0.5 ms, or for rk a step at which "
+      "the pins are stable");
   line.positive("--tolerance", &o.tolerance,
-                "tolerance of Newton's corrections (if omitted, 1e-5), for adams and dormand-prince of the error of a "
-                "step (1e-6)");
-  line.flag("--halve", &o.halve, "compares ideal pins at this step and at half of it");
+                "tolerance of Newton's method (if omitted, 1e-5); for adams and dormand-prince, of the error of a step "
+                "(if omitted, 1e-6)");
+  line.flag("--halve", &o.halve, "compares ideal pins at this step and at half of this step");
   line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
-              "pivot: the right track backwards; curve: the right one at 0.8 of the speed");
+              "pivot: the right track runs backwards; curve: the right track runs at 0.8 of the speed");
   line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
   line.option("--preload", &o.preload, "preload of the tensioners [N]");
   line.positive("--penalty", &o.penalty, "stiffness of penalty pins and bushings [N/m]");
   line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
-  line.flag("--bumps", &o.bumps, "a course with three bumps");
-  line.option("--animate", &o.animate, "writes a ParaView animation with a state every so many seconds");
-  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
-  line.option("--film", &o.film_file,
-              "film of the run, or of rigid links beside cables; with a viewer, film.html in the folder --out");
+  line.flag("--bumps", &o.bumps, "ground with three bumps");
+  line.option("--animate", &o.animate, "writes a ParaView animation with a state at this interval [s]");
+  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
+  line.option(
+      "--film", &o.film_file,
+      "file for a film of the run, or of rigid links and cables; default with --viewer: film.html in the folder --out");
   line.flag("--audit", &o.audit, "prints the energy balance");
   line.option("--out", &o.out, "folder of the results");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;

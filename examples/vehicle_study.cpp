@@ -1,7 +1,8 @@
 // The tracked vehicle with two uncertain parameters: the preload of its tensioners and the friction of its tracks. A
-// Latin hypercube of both gives the distribution of the force in a pin and of the distance of the vehicle. The study
-// can be interrupted and continued, on threads or on MPI ranks: vehicle_study --threads 2 --out out/vehicle_study
-// mpirun -np 2 vehicle_study --out out/vehicle_study
+// Latin hypercube of both parameters gives the distribution of the force in a pin and of the distance that the vehicle
+// travels. The study can be interrupted and continued, on threads or on MPI ranks:
+//   vehicle_study --threads 2 --out out/vehicle_study
+//   mpirun -np 2 vehicle_study --out out/vehicle_study
 #include <iostream>
 #include <polybody/polybody.hpp>
 #include <polybody/study.hpp>
@@ -24,9 +25,9 @@ struct Options {
   bool retry = false, no_plot = false;
 };
 
-constexpr int watched_pin = 20;  // of the left track, on the ground at the start
+constexpr int watched_pin = 20;  // number of a pin of the left track that is on the ground at the start
 
-// The largest and the mean force in the watched pin [kN], and the way forward [m].
+// Largest and mean force in the watched pin [kN], and distance travelled [m].
 std::array<double, 3> drive(Options const& o, Point const& p) {
   m113::VehicleOptions options{.preload = 1e3 * p["preload"], .friction_factor = p["friction factor"]};
   options.start = m113::settled_track(options);
@@ -87,16 +88,16 @@ void run(Options const& o, Ranks const& ranks) {
 int main(int argc, char** argv) {
   Ranks const ranks(argc, argv);
   Options o;
-  CommandLine line{"A study: the tracked vehicle under unknown preload and friction."};
-  line.between("--samples", &o.samples, 1, 100000, "vehicles");
-  line.between("--seed", &o.seed, 0, 1e9, "of the Latin hypercube");
+  CommandLine line{"Study of the tracked vehicle with random preload and friction."};
+  line.between("--samples", &o.samples, 1, 100000, "number of vehicles");
+  line.between("--seed", &o.seed, 0, 1e9, "seed of the Latin hypercube");
   line.positive("--until", &o.end_time, "end of the runs [s]");
   line.positive("--step", &o.step, "time step [s]");
   line.option("--speed", &o.speed, "speed of the sprockets after 0.7 of the run [rad/s]");
-  line.between("--threads", &o.threads, 1, 4096, "that work on points");
+  line.between("--threads", &o.threads, 1, 4096, "number of threads that compute points");
   line.option("--out", &o.out, "folder of the record, the tables and the pictures");
   line.flag("--retry", &o.retry, "computes the failed points again");
-  line.flag("--no-plot", &o.no_plot, "data and scripts only");
+  line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {
     run(o, ranks);

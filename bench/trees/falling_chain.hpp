@@ -1,6 +1,6 @@
 #pragma once
-// The chain of bench/trees.cpp in C++17 without any library: links on pins that fall from a horizontal start, and the
-// measurement of times.
+// Data of the chain of bench/trees.cpp, links on pins that fall from a horizontal start, and the measurement of times.
+// In C++17 and without any library.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,19 +20,20 @@ inline double rate(int i) { return 0.5 * std::cos(2.0 * i); }
 using Tip = std::array<double, 2>;
 inline double apart(Tip const& a, Tip const& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 
-/// One second at a tolerance: processor time and the tip.
+/// Result of one second of motion at one tolerance: processor time [s] and position of the tip.
 struct Second {
   double seconds = 0.0;
   Tip tip = {};
 };
-/// A call of the accelerations at the bent chain: processor time [s], and the last of them [rad/s²].
+/// Result of a call for the accelerations of the bent chain: processor time [s] and acceleration of the last joint
+/// [rad/s²].
 struct Call {
   double seconds = 0.0, last = 0.0;
 };
 
 /// Processor time of this program [s].
 inline double now() { return double(std::clock()) / CLOCKS_PER_SEC; }
-/// Of one pass, the fastest of several rounds [s].
+/// Processor time of one pass in the fastest of `rounds` rounds [s].
 template <class F>
 double fastest(int rounds, int passes, F&& pass) {
   double best = 1e300;

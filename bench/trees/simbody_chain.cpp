@@ -38,7 +38,7 @@ Call simbody_call(int links) {
     x.updU()[i] = rate(i);
   }
   double const taken = fastest(20, 20000 / links, [&] {
-    x.updQ()[0] = angle(0);  // nothing of the call before holds
+    x.updQ()[0] = angle(0);  // invalidates the results of the previous call
     chain.system.realize(x, SimTK::Stage::Acceleration);
   });
   return {taken, x.getUDot()[links - 1]};

@@ -1,11 +1,12 @@
 #pragma once
-// The chain by Simbody, whose headers do not compile as C++20.
+// The chain of bench/trees.cpp in Simbody. A separate file compiles it, because the headers of Simbody do not compile
+// as C++20.
 #include "falling_chain.hpp"
 
 namespace falling_chain {
 
 Call simbody_call(int links);
-/// By Runge–Kutta–Merson at this accuracy.
+/// One second of motion with the Runge–Kutta–Merson method at this `accuracy`.
 Second simbody_second(int links, double accuracy);
 
 }  // namespace falling_chain

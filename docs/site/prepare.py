@@ -53,7 +53,7 @@ def each_with_its_comment(line, comment=None):
 
 
 # --- headers: what a concept asks for ---------------------------------------------------------
-SECTIONS = {"A body": "bodies", "A joint geometry": "joints", "A joint geometry with its own functions": "joints", "A policy": "joints", "A force element": "forces", "An integrator": "integrators", "A linear solver": "solvers", "Their laws": "testing"}
+SECTIONS = {"A body": "bodies", "A joint geometry": "joints", "A joint geometry with its own functions": "joints", "A policy": "joints", "A force element": "forces", "An integrator": "integrators", "A linear solver": "solvers", "Law tests": "testing"}
 MEMBER_ROW = re.compile(r"^\| (`[^|]*`[^|]*) \| ([^|]*) \|$", re.M)
 
 

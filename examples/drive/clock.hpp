@@ -1,5 +1,5 @@
 #pragma once
-// A run beside the clock on the wall.
+// Synchronisation of a run with wall-clock time.
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -7,17 +7,17 @@
 
 namespace drive {
 
-// The run's frames are due when the clock has come to their time. One that is late by more than `patience` sets the
-// clock back, so that a slow machine shows the motion slowly instead of chasing after it.
+// Clock of a run. A frame at time t [s] of the run is due t seconds of wall-clock time after the start. A frame that is
+// late by more than `patience` [s] sets the clock back by its delay, so that a slow machine shows a slow motion.
 class WallClock {
  public:
   WallClock(bool waits, double patience) : waits_(waits), patience_(patience) {}
 
-  // A step is computed between these.
+  // Begin and end of the computation of a step.
   void begin_step() { step_began_ = now(); }
   void end_step() { steps_.push_back(now() - step_began_); }
 
-  // A frame to time t [s] of the run is ready: waits until it is due.
+  // Counts the frame at time t [s] of the run. Waits until the frame is due if `waits` is true.
   void frame(double t) {
     ++frames_;
     double const late = now() - began_ - t;
@@ -35,8 +35,8 @@ class WallClock {
   long frames() const { return frames_; }
   long missed() const { return missed_; }
   double latest() const { return latest_; }
-  double slipped() const { return slipped_; }  // by how much the clock was set back, together [s]
-  // Of the times of steps, in rising order.
+  double slipped() const { return slipped_; }  // sum of the delays by which the clock was set back [s]
+  // Computing times of all steps in ascending order [s].
   std::vector<double> sorted_steps() const {
     std::vector<double> all = steps_;
     std::sort(all.begin(), all.end());

@@ -1,5 +1,5 @@
 #pragma once
-// Keys as they are pressed, of a terminal that waits for no end of line meanwhile.
+// Reader of single keys from a terminal, without an end of line.
 #include <termios.h>
 
 namespace drive {
@@ -8,13 +8,14 @@ enum class Key { none, faster, slower, left, right, straight, stop, quit };
 
 class Keyboard {
  public:
-  // \throws polybody::InvalidInput if the input is not a terminal.
+  // Changes the mode of the terminal; the destructor restores the mode. \throws polybody::InvalidInput if the standard
+  // input is not a terminal.
   Keyboard();
   ~Keyboard();
   Keyboard(Keyboard const&) = delete;
   Keyboard& operator=(Keyboard const&) = delete;
 
-  Key next();  // what was pressed and not asked for yet
+  Key next();  // next key that was pressed; `none` if there is no further key
 
  private:
   termios before_{};

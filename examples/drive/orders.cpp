@@ -8,7 +8,7 @@
 std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) {
   using polybody::IoError;
   std::optional<std::string> const text = polybody::detail::content_of(file);
-  if (!text) throw IoError{"The drive \"", file.string(), "\" cannot be read."};
+  if (!text) throw IoError{"The file of orders \"", file.string(), "\" cannot be read."};
   std::vector<Order> orders;
   std::istringstream lines(*text);
   std::string line;
@@ -28,9 +28,10 @@ std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) 
           line,
           "\"."};
     if (!orders.empty() && order.t < orders.back().t)
-      throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times must not decrease."};
+      throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times of the orders must not decrease."};
     orders.push_back(order);
   }
-  if (orders.empty()) throw IoError{"The drive \"", file.string(), "\" has no line below its head."};
+  if (orders.empty())
+    throw IoError{"The drive \"", file.string(), "\" has no orders. Add lines of t,left,right below the head line."};
   return orders;
 }

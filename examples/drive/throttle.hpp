@@ -1,5 +1,5 @@
 #pragma once
-// Angular velocity of a drive with target values that are given during a run.
+// Angular velocity of a drive. Its target values are set during a run.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace drive {
 using polybody::Motion;
 
 // Angular velocity that approaches its target along cubic polynomials, continuous with its first derivative. All copies
-// share one target. `ask` sets it between two steps and changes no value before its time t.
+// share one target. `ask(t, target)` sets the target [rad/s] between two steps and changes no value before time t [s].
 class Throttle {
  public:
   void ask(double t, double target) {
@@ -33,7 +33,8 @@ class Throttle {
   static constexpr double acceleration = 6.0;  // [rad/s²]
   static constexpr double shortest = 0.25;     // least duration of a change of speed [s]
 
-  // From `start` on: s = s₀ (2x³ − 3x² + 1) + T r₀ (x³ − 2x² + x) + s₁ (3x² − 2x³), x = (t − start)/T.
+  // Speed s from the time `start` on, with x = (t − start)/T: s = s₀ (2x³ − 3x² + 1) + T r₀ (x³ − 2x² + x) + s₁ (3x² −
+  // 2x³). s₀ is `speed`, r₀ is `rate`, s₁ is `target`, T is `duration`; the speed is constant after T.
   struct Piece {
     double start = 0.0, duration = 1.0, angle = 0.0, speed = 0.0, rate = 0.0, target = 0.0;
 
@@ -59,12 +60,12 @@ class Throttle {
   std::shared_ptr<Orders> orders_ = std::make_shared<Orders>();
 };
 
-// Order for the left and the right drive, with its time.
+// Target speeds of the left and the right drive, and the time at which they are set.
 struct Order {
   double t, left, right;  // [s], [rad/s]
 };
 
-// A file of lines "t,left,right" below a head. \throws IoError naming file and line.
+// Reads a file of orders: a head line, then lines "t,left,right" [s], [rad/s]. \throws IoError naming file and line.
 std::vector<Order> read_orders(std::filesystem::path const& file);
 
 }  // namespace drive

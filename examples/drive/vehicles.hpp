@@ -1,5 +1,6 @@
 #pragma once
-// The vehicle under throttles, by the formulation of its links. Each is compiled in a file of its own.
+// Vehicles with throttles, one function for each formulation of the links. Each function is compiled in a separate
+// file.
 #include <polybody/run/any_model.hpp>
 #include <polybody/vehicle/terrain.hpp>
 

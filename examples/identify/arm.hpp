@@ -1,6 +1,6 @@
 #pragma once
-// A flexible arm on a rubber mount that lets it slide and turn, let go under its weight: the mount's stiffness and
-// damping from where its tip has been, under any formulation of the arm.
+// Flexible arm on a rubber mount that permits translation and rotation, released under its weight. Stiffness and
+// damping of the mount are identified from the motion of the tip, under any formulation of the arm.
 
 #include <ctime>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
@@ -27,11 +27,11 @@ inline Bar strip() {
 }
 
 struct Experiment {
-  double end_time = 1.5, step = 2e-3;  // of the runs that are fitted [s]
-  double sampling = 1e-2;              // of the record, a multiple of the step [s]
+  double end_time = 1.5, step = 2e-3;  // end time and step of the fitted runs [s]
+  double sampling = 1e-2;              // sampling interval of the record, a multiple of the step [s]
 };
 
-// The arm as a B of so many elements, made for numbers of the mount.
+// Scenario of the arm as a body B with `elements` elements, for the parameters p of the mount.
 template <class B>
 struct Arm {
   Experiment experiment;
@@ -56,7 +56,7 @@ struct Arm {
   }
 };
 
-// x and y of the tip at the multiples of the sampling [m], one pair after the other.
+// Coordinates of the tip at the multiples of the sampling interval [m]: x, y, x, y, ….
 template <class Make, class I>
 VecX tip_of(Make const& make, std::span<double const> p, I const& integrator) {
   auto scenario = make(p);
@@ -72,10 +72,11 @@ VecX tip_of(Make const& make, std::span<double const> p, I const& integrator) {
   return Eigen::Map<VecX const>(tip.data(), Index(tip.size()));
 }
 
-// A smooth motion's error by steps is some 1e-5 of it; Newton's own is far below, so that differences of runs show it.
+// The relative discretisation error of a smooth motion is about 1e-5. The tolerance of Newton's method is much smaller,
+// so that its error does not affect differences of runs.
 inline GeneralisedAlpha const method{.rho_inf = 0.9, .tolerance = 1e-12, .start_correction = false};
 
-// The derivatives of `tip_of`, rows as there.
+// Derivatives of `tip_of` with respect to the parameters. The rows are in the order of `tip_of`.
 template <class Make>
 MatX derivatives_of_tip(Make const& make, std::span<double const> p) {
   std::vector<Parameter> parameters;
@@ -107,7 +108,8 @@ inline VecX exact_record(Experiment experiment, Numbers const& truth) {
   experiment.step = 1e-3;
   return tip_of(Arm<planar::AncfCable<EngineeringStrain>>{experiment, 16}, truth, Radau{});
 }
-// Gaussian noise of this deviation, the same on every machine: by Box's and Muller's formula from the generator's bits.
+// Adds Gaussian noise with this standard `deviation` [m] by the formula of Box and Muller. The random numbers are the
+// same on every machine.
 inline VecX with_noise(VecX record, double deviation, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   auto const uniform = [&] { return (double(generator() >> 11) + 0.5) * 0x1p-53; };
@@ -120,19 +122,20 @@ inline VecX with_noise(VecX record, double deviation, std::uint64_t seed) {
 
 struct Estimate {
   std::string name{};
-  Numbers value{};                                           // of the mount
-  Mat<double, 4, 4> covariance = Mat<double, 4, 4>::Zero();  // of the values
-  double deviation = 0.0;                                    // of the record from the fit [m]
+  Numbers value{};                                           // estimated parameters of the mount
+  Mat<double, 4, 4> covariance = Mat<double, 4, 4>::Zero();  // covariance of the parameters
+  double deviation = 0.0;                                    // standard deviation of the record from the fit [m]
   std::vector<double> sums{};                                // ½ Σ r² after each iteration [m²]
   int runs = 0, gradients = 0;
-  double seconds = 0.0;  // of the processor
+  double seconds = 0.0;  // processor time of the fit [s]
   bool converged = false;
 
-  // Half the length of the interval that has the value with a probability of 95 %.
+  // Half width of the 95 % confidence interval of parameter i.
   double interval(std::size_t i) const { return 1.96 * std::sqrt(covariance(Index(i), Index(i))); }
 };
 
-// Fits x = 1 + 2 ln(p/start): numbers p stay positive, and x are alike in size.
+// Fits the variables x = 1 + 2 ln(p/start), so that the parameters p remain positive and the variables have similar
+// magnitudes.
 inline Estimate estimate(Candidate const& c, VecX const& record, Numbers const& start) {
   auto const numbers = [&](VecX const& x) {
     Numbers p{};

@@ -1,6 +1,6 @@
 #pragma once
-// A driven link that carries a mass at its end, made of sections of their own heights, under any formulation: the
-// stress where each section begins, at all times of a run, by the heights.
+// Driven link with a mass at its end, under any formulation. The link consists of sections with different heights.
+// Outputs are the stresses at the beginning of each section at all times of a run, as functions of the heights.
 
 #include <ctime>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
@@ -11,7 +11,7 @@ namespace lighter_link {
 
 using namespace polybody;
 
-// A turn by an angle with no corner anywhere: ½ angle (tanh((t − middle)/time) + tanh(middle/time)).
+// Smooth rotation by `angle` without breakpoints: ½ angle (tanh((t − middle)/time) + tanh(middle/time)).
 struct Turn {
   double angle, time, middle;  // [rad], [s], [s]
 
@@ -19,23 +19,23 @@ struct Turn {
     double const x = std::tanh((t - middle) / time), slope = 1.0 - x * x, half = 0.5 * angle;
     return {half * (x + std::tanh(middle / time)), half * slope / time, -2.0 * half * x * slope / (time * time)};
   }
-  // The largest acceleration, at tanh² = 1/3 [rad/s²].
+  // Largest angular acceleration [rad/s²], at tanh²((t − middle)/time) = 1/3.
   double peak() const { return 2.0 / (3.0 * std::sqrt(3.0)) * angle / (time * time); }
 };
 
 // Task of the link. The plane of the motion is horizontal, so gravity has no effect.
 struct Task {
-  double length = 1.0, width = 0.02;                    // of the link [m]
-  double payload = 2.0, payload_inertia = 1e-3;         // at its end [kg], [kg m²]
-  Turn turn{0.5 * std::numbers::pi, 0.1, 0.4};          // of its root
-  double end_time = 0.75, step = 3e-3;                  // [s]
-  double allowed = 100e6;                               // stress [N/m²]
-  std::size_t sections = 4;                             // of equal lengths
+  double length = 1.0, width = 0.02;                    // length and width of the link [m]
+  double payload = 2.0, payload_inertia = 1e-3;         // mass and moment of inertia at the end [kg], [kg m²]
+  Turn turn{0.5 * std::numbers::pi, 0.1, 0.4};          // prescribed rotation of the root
+  double end_time = 0.75, step = 3e-3;                  // end time and time step [s]
+  double allowed = 100e6;                               // allowed stress [N/m²]
+  std::size_t sections = 4;                             // number of sections, which have equal lengths
   Material material{.density = 2700.0, .young = 7e10};  // aluminium
   Damping damping{.axial = 1e-4, .shear = 1e-4, .bending = 1e-3};
 
   double section_length() const { return length / double(sections); }
-  double mass(std::span<double const> heights) const {  // of the link [kg]
+  double mass(std::span<double const> heights) const {  // mass of the link [kg]
     double sum = 0.0;
     for (double const h : heights) sum += material.density * width * h * section_length();
     return sum;
@@ -49,9 +49,9 @@ struct Task {
   }
 };
 
-// The link as sections of B with a given number of elements, welded to each other. The outputs are the stresses of
-// the upper and the lower fibre at the beginning of each section, relative to the allowed stress: N/A ∓ M h/2I. N and
-// M are the multipliers of the weld, so they are also available for a rigid formulation.
+// The link as sections of B with a given number of elements, welded to each other. The outputs are the stresses of the
+// upper and the lower fibre at the beginning of each section, relative to the allowed stress: N/A ∓ M h/2I. N and M are
+// multipliers of the joints at this point, so they are also available for a rigid formulation.
 template <class B>
 struct Link {
   Task task;
@@ -105,7 +105,7 @@ struct Link {
 
 inline GeneralisedAlpha const method{.rho_inf = 0.8, .tolerance = 1e-12, .start_correction = false};
 
-// The outputs of a run: steps × outputs.
+// (states × outputs) outputs of a run.
 template <class Make>
 MatX stresses_of(Make const& make, std::span<double const> heights) {
   auto scenario = make(heights);
@@ -117,8 +117,8 @@ MatX stresses_of(Make const& make, std::span<double const> heights) {
   return Eigen::Map<MatX const>(all.data(), columns, Index(all.size()) / columns).transpose();
 }
 
-// One smooth number for all places and times, by Kreisselmeier and Steinhauser: ln Σ exp(ρ σ)/ρ, which lies above the
-// largest by no more than ln(number of them)/ρ.
+// Smooth upper bound of the stresses σ at all points and times, by Kreisselmeier and Steinhauser: ln(Σ exp(ρ σ))/ρ. The
+// bound exceeds the largest of n stresses by at most ln(n)/ρ.
 struct Aggregate {
   double sharpness = 200.0;  // ρ
 
@@ -126,7 +126,8 @@ struct Aggregate {
     double const most = stresses.maxCoeff();
     return most + std::log((sharpness * (stresses.array() - most)).exp().sum()) / sharpness;
   }
-  // ∂/∂p = Σ w ∂σ/∂p, w = exp(ρ σ)/Σ exp(ρ σ): the same and its slopes of a run with derivatives.
+  // Bound for a run with sensitivities, and the derivatives Σ w ∂σ/∂p of the bound with respect to the parameters p,
+  // with the weights w = exp(ρ σ)/Σ exp(ρ σ).
   std::pair<double, VecX> derivatives(SensitivityResult const& s) const {
     double most = s.values[0].maxCoeff(), sum = 0.0;
     for (VecX const& v : s.values) most = std::max(most, v.maxCoeff());
@@ -142,8 +143,8 @@ struct Aggregate {
 
 // Results of a run with derivatives for one design.
 struct Loaded {
-  double aggregate = 0.0, most = 0.0;  // stress, over what is allowed
-  VecX derivatives{};                  // of the aggregate, by the heights [1/m]
+  double aggregate = 0.0, most = 0.0;  // aggregate and largest stress, relative to the allowed stress
+  VecX derivatives{};                  // derivatives of the aggregate with respect to the heights [1/m]
 };
 
 // A formulation of the link with erased type.

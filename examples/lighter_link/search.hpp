@@ -1,5 +1,5 @@
 #pragma once
-// The lightest link whose stress stays below what is allowed.
+// Search for the lightest link whose stress does not exceed the allowed stress.
 
 #include "../support/optimiser.hpp"
 #include "link.hpp"
@@ -7,23 +7,25 @@
 namespace lighter_link {
 
 struct Bounds {
-  double start = 0.03, least = 0.008, most = 0.06;  // of the heights [m]
+  double start = 0.03, least = 0.008, most = 0.06;  // initial, least and greatest height [m]
 };
 
 struct Lightest {
   std::string name{};
-  std::vector<double> heights{};         // [m]
-  double mass = 0.0;                     // of the link [kg]
-  double aggregate = 0.0, stress = 0.0;  // over what is allowed; of all places and times, and the largest
-  std::vector<double> masses{}, aggregates{}, stresses{};  // of the designs that were tried
-  double seconds = 0.0;                                    // of the processor
-  std::string why{};                                       // the search ended
+  std::vector<double> heights{};         // heights of the sections [m]
+  double mass = 0.0;                     // mass of the link [kg]
+  double aggregate = 0.0, stress = 0.0;  // aggregate and largest stress, relative to the allowed stress
+  // Masses [kg], aggregates and largest stresses of all tried designs.
+  std::vector<double> masses{}, aggregates{}, stresses{};
+  double seconds = 0.0;  // processor time of the search [s]
+  std::string why{};     // reason for the end of the search
   bool converged = false;
 };
 
-// Search with one run with derivatives for each design; the method requests mass and stress one after the other. The
-// variables are the logarithms of the heights, and the bound is on the logarithm of the stress: M h/2I is
-// proportional to h⁻², so the relation of the logarithms is nearly linear, as the method assumes.
+// Searches with one run with derivatives for each design. The method requests mass and stress of a design separately,
+// so the results of the last run are stored. The variables are the logarithms of the heights, and the bound is on the
+// logarithm of the stress: M h/2I is proportional to h⁻², so the relation of the logarithms is nearly linear, as the
+// method assumes.
 inline Lightest lightest(Candidate const& c, Task const& task, Bounds const& bounds) {
   Lightest out{.name = c.name};
   auto const heights = [&](std::span<double const> x) {

@@ -74,7 +74,8 @@ void check(VehicleOptions const& options) {
                        {ErrorObject{"M113"}, ": the pin that closes a track must lie in [0, 63], but is ",
                         ErrorValue{options.cut}, "."});
   if (options.link_elements < 0)
-    throw InvalidInput("m113.option", {ErrorObject{"M113"}, ": a flexible link needs at least one element, but has ",
+    throw InvalidInput("m113.option", {ErrorObject{"M113"},
+                                       ": the number of elements of a flexible link must not be negative, but is ",
                                        ErrorValue{options.link_elements}, "."});
   require_not_negative(options.friction_factor, "M113: the factor of the coefficients of friction");
 }

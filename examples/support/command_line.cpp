@@ -40,7 +40,7 @@ void CommandLine::one_of(std::string const& name, std::string* value, std::vecto
   if (!alone.empty()) option->expected(0, 1)->default_str(alone);
 }
 void CommandLine::flag(std::string const& name, bool* value, std::string const& help) {
-  // A flag has no value: CLI11 reads one of "!--no-…" by stoll, whose std::out_of_range it lets through.
+  // A flag has no value. CLI11 would convert a value of "!--no-…" by std::stoll and not catch std::out_of_range.
   app_->add_flag(name, *value, help)->disable_flag_override();
 }
 

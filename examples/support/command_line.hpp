@@ -1,6 +1,6 @@
 #pragma once
-// The options of an example's command line, by CLI11: compiled once for all examples, as its header costs each of them
-// six times Eigen/Dense.
+// Options of an example's command line, by CLI11. They are compiled once for all examples, because the header of CLI11
+// takes six times as long to compile as Eigen/Dense.
 
 #include <cstddef>
 #include <filesystem>
@@ -26,10 +26,10 @@ class CommandLine {
   void positive(std::string const& name, Value value, std::string const& help);
   void not_negative(std::string const& name, Value value, std::string const& help);
   void between(std::string const& name, Value value, double least, double most, std::string const& help);
-  // `alone`, if it is not empty, is the value of an option that is given without a value.
+  // If `alone` is not empty, an option without a value has this value.
   void one_of(std::string const& name, std::string* value, std::vector<std::string> const& all, std::string const& help,
               std::string const& alone = "");
-  // "!--no-…" sets it to false.
+  // A `name` "!--no-…" sets the value to false.
   void flag(std::string const& name, bool* value, std::string const& help);
 
   // Return value for main after --help or after invalid options, which are reported; empty if the program continues.

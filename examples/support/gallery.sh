@@ -1,11 +1,11 @@
-# Names and captions of the examples of examples/run, and the page of their pictures. Sourced.
+# Names and captions of the examples of examples/run, and the page of their pictures. Other scripts source this file.
 
 # Examples that are built by default: the thesis. Then studies and designs.
 chapters=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
 stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 
-# Time of each example from the start to its last picture, after the previous ones, on two cores [s]. It is used for the
-# remaining time only.
+# Time of each example from its start to its last picture, if the previous examples are built, on two cores [s]. These
+# times are used only to estimate the remaining time.
 declare -A seconds=([pendulum]=15 [robot_arm]=90 [cantilever]=25 [chain_study]=30 [tracked_vehicle]=150 [link_from_fe]=25 [track_stress]=120 [vehicle_study]=50 [identify]=45 [lighter_link]=40)
 
 declare -A shows=(
@@ -21,7 +21,7 @@ declare -A shows=(
   [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
 )
 
-# command_of NAME OUT [VIEWER]: the program and its options. If the film player exists, some write a film.
+# command_of NAME OUT [VIEWER]: the program NAME and its options. With a VIEWER, some programs write a film.
 command_of() {
   local film=${3:+ --viewer $3}
   case $1 in
@@ -50,17 +50,18 @@ left() {
 
 escaped() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' <<< "$1"; }
 
-# caption_of PICTURE: the title in the script of the same name, or its name.
+# caption_of PICTURE: the title in the script of the same name, or the name of the picture.
 caption_of() {
   local script=${1%.*}.gp title=
   [ ! -r "$script" ] || title=$(sed -n "s/^set title '\(.*\)' noenhanced\$/\1/p" "$script" | head -n 1 | sed "s/''/'/g")
   echo "${title:-$(basename "${1%.*}" | tr _ ' ')}"
 }
 
-# title_of FILM: the title of its page, unchanged.
+# title_of FILM: the title of the film's page, unchanged.
 title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$//'; }
 
-# write_index OUT: OUT/index.html of all pictures and films below it. Written to a temporary file and moved, so it is never incomplete.
+# write_index OUT: writes OUT/index.html with all pictures and films below OUT. The page is written to a temporary file
+# and moved, so it is never incomplete.
 write_index() {
   local out=$1 page=$1/index.html.part name picture path films
   mkdir -p "$out"
@@ -84,7 +85,7 @@ HEAD
       [ -d "$out/$name" ] || continue
       echo "<h2>$name</h2>"
       echo "<p>$(escaped "${shows[$name]}")</p>"
-      # The command that makes the films below it needs the film player.
+      # If the example has films, its command includes the viewer.
       films=$(films_of "$out/$name")
       echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out" "${films:+build/examples/polybody_viewer.html}")")</code></p>"
       while IFS= read -r picture; do

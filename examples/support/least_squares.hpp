@@ -17,9 +17,9 @@ struct LeastSquares {
 };
 
 struct LeastSquaresFit {
-  Eigen::VectorXd at{};           // numbers x with the least sum of squares
-  Eigen::VectorXd residuals{};    // there
-  Eigen::MatrixXd derivatives{};  // there
+  Eigen::VectorXd at{};           // variables x with the least sum of squares
+  Eigen::VectorXd residuals{};    // residuals at this x
+  Eigen::MatrixXd derivatives{};  // derivatives at this x
   std::vector<double> sums{};     // ½ Σ r² of the start and after each iteration
   int runs = 0, slope_runs = 0;   // number of evaluations of residuals and of derivatives
   bool converged = false;
@@ -56,9 +56,9 @@ struct CountedLeastSquares : Eigen::DenseFunctor<double> {
   }
 };
 
-// Minimises the sum of squares from `start`, whose entries are of the order of one; the first steps are at most as
-// long as `start`. It ends if the relative change of the sum or of the variables is below `tolerance`, or after
-// `most` iterations.
+// Minimises the sum of squares from `start`, whose entries must be of the order of one. The first steps are at most as
+// long as `start`. The iteration ends if the relative change of the sum or of the variables is below `tolerance`, or
+// after `most` iterations.
 inline LeastSquaresFit least_squares(LeastSquares const& problem, Eigen::VectorXd const& start, double tolerance = 1e-6,
                                      int most = 30) {
   using Status = Eigen::LevenbergMarquardtSpace::Status;
@@ -73,7 +73,7 @@ inline LeastSquaresFit least_squares(LeastSquares const& problem, Eigen::VectorX
   method.setFactor(1.0);
   method.setExternalScaling(true);
   method.diag() = Eigen::VectorXd::Ones(start.size());
-  --fit.runs;  // the method begins with the same one
+  --fit.runs;  // minimizeInit repeats this evaluation and counts it
   Status status = method.minimizeInit(fit.at);
   fit.sums.push_back(0.5 * std::pow(method.fnorm(), 2));
   while (status != Status::ImproperInputParameters && int(fit.sums.size()) <= most) {

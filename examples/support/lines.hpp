@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in lines that are easy to read and to take apart: "  what: quantity number unit, quantity number unit".
+// Printer of numbers in lines that people and programs can read: "  what: quantity number unit, quantity number unit".
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,11 +11,11 @@
 struct Value {
   std::string quantity;
   double number;
-  int digits;  // after the point; of a number with an exponent, less than zero
+  int digits;  // digits after the point; negative: the number is printed with an exponent
   std::string unit = "";
 };
 
-// Writes each line once, by its key; figures and reports have lines in common.
+// Prints each line only once, because figures and reports share lines. `what` identifies a line.
 class Lines {
  public:
   void operator()(std::string const& what, std::vector<Value> const& values, std::string const& remark = "") {

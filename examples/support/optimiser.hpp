@@ -1,5 +1,6 @@
 #pragma once
-// The least of a function under one bound on another, by NLopt's SLSQP [Kraft 1994], which takes exact gradients.
+// Minimisation of a function under one inequality constraint, by the SLSQP method of NLopt [Kraft 1994] with exact
+// gradients.
 
 #include <nlopt.h>
 
@@ -17,18 +18,19 @@ struct ValueAndSlopes {
   std::vector<double> derivatives{};
 };
 
-// x that makes `objective` least where `constraint` ≤ 0 and least ≤ x ≤ most. All should be of the size of one.
+// Problem: minimise `objective`(x) subject to `constraint`(x) ≤ 0 and least ≤ x ≤ most. Variables and function values
+// should be of the order of one.
 struct Design {
   std::function<ValueAndSlopes(std::span<double const>)> objective{}, constraint{};
   std::vector<double> start{}, least{}, most{};
-  double tolerance = 1e-5;  // of x, relatively; a tenth of the constraint's
+  double tolerance = 1e-5;  // relative tolerance of x; the tolerance of the constraint is ten times as large
   int most_runs = 60;       // evaluations of the objective after each start of the method
 };
 
 struct BestDesign {
   std::vector<double> x{};
   double objective = 0.0, constraint = 0.0;
-  std::string why{};  // the method stopped
+  std::string why{};  // reason for which the method stopped
   bool converged = false;
 };
 
@@ -61,9 +63,9 @@ inline char const* reason(nlopt_result result) {
     case NLOPT_MAXEVAL_REACHED:
       return "the number of runs is used up";
     case NLOPT_ROUNDOFF_LIMITED:
-      return "rounding allows no more";
+      return "round-off prevents further progress";
     case NLOPT_SUCCESS:
-      return "the conditions of the least value hold";
+      return "the optimality conditions are satisfied";
     default:
       return "the method failed";
   }

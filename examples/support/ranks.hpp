@@ -1,5 +1,5 @@
 #pragma once
-// The ranks of MPI, or one rank where the program is built without MPI: a study's program is the same.
+// Ranks of MPI, or one rank if the program is built without MPI. The source of a study is the same in both cases.
 #include <polybody/study/study.hpp>
 
 #ifdef POLYBODY_WITH_MPI

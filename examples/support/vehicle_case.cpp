@@ -92,7 +92,7 @@ class Numbers {
   std::shared_ptr<m113::TrackedVehicle const> vehicle_;
   m113::TrackStart start_;
   Probe probe_;
-  Index pin_ = 0, drive_ = 0;  // places of the joints in the layout
+  Index pin_ = 0, drive_ = 0;  // indices of the joints in the layout
   double t_ = -1.0;
 };
 

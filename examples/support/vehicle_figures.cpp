@@ -25,7 +25,7 @@ Filtered filtered(Runs const& runs, std::size_t run, std::string const& output, 
   auto const times = runs.filtered_times(run);
   auto const values = std::span(runs.history(run, output)).first(times.size());
   Filtered f{{times.begin(), times.end()}, {values.begin(), values.end()}};
-  if (runs.sampling > 0.0) {  // states come up to a step after their sample
+  if (runs.sampling > 0.0) {  // a recorded state is up to one step later than its sampling time
     f.values = resampled(f.times, f.values, runs.sampling, 2.5 * runs.sampling);
     double const start = f.times.front();
     f.times.clear();
@@ -52,7 +52,7 @@ Span span_of(std::vector<double> const& times, std::vector<double> const& x, dou
 double yaw_rate(Runs const& runs, std::size_t run, double from) {
   auto const &t = runs.times(run), &yaw = runs.history(run, "yaw [rad]");
   std::size_t const first = std::min(std::size_t(std::lower_bound(t.begin(), t.end(), from) - t.begin()), t.size() - 2);
-  double turned = 0.0;  // the angle jumps by a turn at ±π
+  double turned = 0.0;  // the yaw angle jumps by 2π at ±π
   for (std::size_t i = first + 1; i < t.size(); ++i)
     turned += std::remainder(yaw[i] - yaw[i - 1], 2.0 * std::numbers::pi);
   return turned / (t.back() - t[first]);
@@ -91,7 +91,7 @@ void over_time(Settings const& o, Runs const& runs, std::string const& output, s
   draw(o, history_figure(runs, output, std::move(title), std::move(label), cut_off, scale), name);
 }
 
-// Over the time after `from` [s]; before 9 s there may still be the end of the ramp's surge.
+// Mean forward velocity after the time `from` [s]. The transient of the ramp may last until 9 s.
 double mean_speed(Runs const& runs, std::size_t run, double from) {
   auto const &t = runs.times(run), &x = runs.history(run, "forward position [m]");
   std::size_t first = 0;

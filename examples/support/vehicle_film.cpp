@@ -6,7 +6,7 @@ namespace {
 constexpr double frames_per_second = 30.0;  // of simulated time
 constexpr double same_time = 1e-9;          // [s]
 
-// \param output "label [unit]"
+// Adds a point to the history `output`, which is given as "label [unit]".
 void add_point(FilmScene& scene, std::string const& output, double t, double number) {
   std::size_t const unit = output.find(" [");
   scene.plot(output.substr(0, unit), output.substr(unit + 2, output.size() - unit - 3), t, number);

@@ -7,26 +7,28 @@
 
 namespace chapter3 {
 
-// The camera goes with the hull.
+// Creates a film whose camera follows the hull.
 std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& title);
 
-// One run.
+// Scene of one run.
 class VehicleScene {
  public:
-  // \param until last time of the film [s]
-  // \param joints whether with the forces of joints, a sixth of the file
+  // \param end_time last time of the film [s]
+  // \param joints true: includes the forces of joints, which are a sixth of the file
   VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints = true);
 
-  // A point of a history, unless there was one within 5 ms.
+  // Adds a point to each history unless the last point is less than 5 ms earlier. `numbers` are pairs of "label [unit]"
+  // and a value.
   void plot(double t, std::vector<std::pair<char const*, double>> const& numbers);
   // Adds a complete history with the label "label [unit]".
   void plot(std::string const& output, std::vector<double> const& times, std::vector<double> const& values);
   // Records a frame if one is due.
   void see(ObservedState const& now);
 
-  // Postpones the frames to `show_kept` after the run: due states are stored and passed to `also`.
+  // Postpones the frames until `show_kept` is called after the run. States at which a frame is due are stored and
+  // passed to `also`.
   void keep(std::function<void(State const&)> also) { also_ = std::move(also); }
-  // Frame k of the states that were kept, once `dress` has changed what there is to be seen in it.
+  // Records a frame for each stored state k. Before, `dress(k, parts)` changes the parts of the frame.
   void show_kept(Probe& probe, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress);
 
  private:

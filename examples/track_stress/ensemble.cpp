@@ -9,8 +9,8 @@ namespace chapter4 {
 
 namespace {
 
-// Plausible ranges of the data that the thesis does not give. The section of a cable need not have the mass of a
-// rigid link; the box with the inertia of Table 3.1 is 1.7 times as high.
+// Plausible ranges of the data that the thesis does not give. The section of a cable need not give the mass of a rigid
+// link: the box with the inertia of Table 3.1 is 1.7 times as high as the section with this mass.
 std::vector<std::pair<std::string, Options>> plausible(Options const& o) {
   std::vector<std::pair<std::string, Options>> all{{"as given", o}};
   auto const with = [&](std::string const& name, auto const& change) {
@@ -80,7 +80,8 @@ std::vector<SettingRuns> runs_of_settings(Options const& o) {
   };
   for (auto const& [name, setting] : plausible(o))
     add(name, setting, run(setting, {on_pins(rigid_links()), on_pins(cable_links())}));
-  // Cables would need steps of less than a microsecond.
+  // The run by Adams has rigid links only, because cables would need steps of less than a microsecond. The cables in
+  // its results are those of the first setting.
   StressRuns by_adams = rigid_links_by_adams(o);
   StressRuns const& given = all.front().runs;
   by_adams.comparison.runs.push_back(given.comparison.runs[1]);

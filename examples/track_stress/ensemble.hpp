@@ -1,33 +1,33 @@
 #pragma once
-// Runs of rigid links and of ANCF cables under settings that the thesis does not give.
+// Runs with rigid links and with ANCF cables for several values of data that the thesis does not give.
 #include "stress_runs.hpp"
 
 namespace chapter4 {
 
-// One setting, its rigid links first.
+// Runs with one setting: rigid links, then cables.
 struct SettingRuns {
   std::string name;
   Options options;
   StressRuns runs;
 };
 
-// The first is as the options give it.
+// Runs with several settings. The first setting is that of the options.
 std::vector<SettingRuns> runs_of_settings(Options const& o);
 
 Filtered filtered_strain(StressRuns const& runs, std::size_t k, double cut_off);
 
-// The least and the most of a history over several settings, at equal steps.
+// Minimum and maximum of a history over several settings, at equal time steps.
 class Band {
  public:
   Band(std::vector<SettingRuns> const& settings, std::function<Filtered(SettingRuns const&)> const& history);
-  // The area between them.
+  // Area between minimum and maximum, as a filled curve.
   Curve curve(std::string label, int colour, double scale, std::size_t every = 4) const;
 
  private:
   std::vector<double> times_, least_, most_;
 };
 
-// Decoupled and coupled strain under each setting, as a table and as bands.
+// Prints decoupled and coupled strain for each setting as a table, and draws bands over all settings.
 void ensemble(Options const& o);
 
 }  // namespace chapter4

@@ -1,16 +1,17 @@
 #pragma once
-// Every link on every pin, as the program is asked for them, and runs of several side by side.
+// Combinations of links and pins that the options select, and runs of several combinations.
 #include <polybody/compare/join.hpp>
 
 #include "stress_runs.hpp"
 
 namespace chapter4 {
 
-// In the order of all_links.
+// Functions that return the combinations of one kind of links, in the order of all_links.
 inline constexpr std::vector<Combination> (*combinations_of[])() = {
     rigid_links, cable_links, modal_links, finite_element_links, rotation_links, beam_links, continuum_links};
 
-// Of `of_links`, on the pins that are asked for, or usual.
+// Combination of `of_links` with these `pins`, or with the usual pins if `pins` is empty. \throws InvalidInput if the
+// combination is impossible.
 inline Combination on_pins(std::vector<Combination> const& of_links, std::string const& pins = "") {
   auto const found = std::find_if(of_links.begin(), of_links.end(),
                                   [&](Combination const& c) { return pins.empty() ? c.usual : c.pins == pins; });
@@ -23,10 +24,10 @@ inline Combination combination_asked(Options const& o) {
   return on_pins(combinations_of[place](), o.pins);
 }
 
-// Why it cannot be driven with these options; else empty.
+// Reason for which a combination cannot run with these options; empty if it can.
 inline std::string refusal(Options const& o, Combination const& c) {
   if (!c.refusal.empty() || c.turns || o.turn.empty()) return c.refusal;
-  return "its pins share a slope across the track that is fixed in the world";
+  return "at its pins, neighbouring links share a slope vector across the track, which is constant in world axes";
 }
 inline void require_driveable(Options const& o, Combination const& c) {
   if (!refusal(o, c).empty())
@@ -35,7 +36,7 @@ inline void require_driveable(Options const& o, Combination const& c) {
         "which is constant in world axes. Use --links rigid, ffr, fe, lrvf, beam or continuum.");
 }
 
-// The runs of several formulations side by side; a film shows rigid links and cables.
+// Runs several combinations and joins their results. A film of several combinations shows rigid links and cables only.
 inline StressRuns run(Options const& o, std::vector<Combination> const& combinations) {
   warn_of_drive(o);
   StressRuns all;

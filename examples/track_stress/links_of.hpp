@@ -1,5 +1,5 @@
 #pragma once
-// Links of one body formulation on the pins of each policy: what a file of links compiles.
+// Combinations of links of one body formulation with pins of each policy. Each file of links compiles one formulation.
 #include "../any_vehicle.hpp"
 #include "m113/link_strain.hpp"
 #include "stress_runs.hpp"
@@ -7,7 +7,8 @@
 
 namespace chapter4 {
 
-// Outputs of the watched link of a vehicle: strain and bending of a flexible link, stress of a finite element link.
+// Watched link of a vehicle, with its outputs: strain and bending of a flexible link, and stress of a finite element
+// link. The loads of a rigid link are recorded instead.
 template <class V, class Links>
 WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, Links const& links) {
   auto const link = vehicle->side(m113::Side::left).links[watched_link];
@@ -30,7 +31,8 @@ WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, L
   }
 }
 
-// Why links of Body cannot hang together by pins of Policy; empty where they can. Model::connect states the same.
+// Reason for which pins of type Policy cannot connect links of type Body; empty if they can. Model::connect refuses the
+// same combinations.
 template <class Body, class Policy>
 constexpr char const* refusal() {
   using Pin = Joint<Revolute, Policy>;
@@ -39,12 +41,12 @@ constexpr char const* refusal() {
   else if constexpr (!CarriableBody<Policy, Body>)
     return "it has no frame that a joint could carry";
   else if constexpr (!SufficientFirstMarker<Pin, Body> || !SufficientSecondMarker<Pin, Body>)
-    return "its ends have an axis and no frame, so that nothing tells where a pin points";
+    return "its ends have an axis and no frame, so the axis of a pin is not defined";
   else
     return "";
 }
 
-// Function that makes links of type Body under these options.
+// Function that returns the link factory for links of type Body and the options.
 template <class Body>
 using LinksMade = std::function<m113::LinkOf<Body>(Options const&)>;
 

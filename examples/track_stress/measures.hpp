@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of runs: means and ranges, differences, cycles of stress.
+// Results of runs: means and ranges, differences, cycles of stress.
 #include <polybody/signals/rainflow.hpp>
 #include <polybody/signals/rms_difference.hpp>
 
@@ -7,10 +7,10 @@
 
 namespace chapter4 {
 
-// Start of the plateau, or half of a shorter run [s].
+// Start of the plateau of the speed, or half of the end time of a shorter run [s].
 inline double plateau(std::vector<double> const& times) { return times.back() > 8.6 ? 8.5 : 0.5 * times.back(); }
 
-// Root mean square of the difference of the filtered strain, or bending, of two runs, from `from` on.
+// Relative root mean square difference of the filtered strain or bending of two runs after the time `from` [s].
 using Told = std::vector<double> const& (StressRuns::*)(std::size_t) const;
 inline double off(Options const& o, StressRuns const& as, std::size_t i, StressRuns const& bs, std::size_t k,
                   double from, Told of = &StressRuns::raw, Told of_b = nullptr) {
@@ -21,7 +21,7 @@ inline double off(Options const& o, StressRuns const& as, std::size_t i, StressR
   return d.value();
 }
 
-// Root mean square of the difference of unfiltered histories of one comparison, over a time interval.
+// Relative root mean square difference of unfiltered histories of two runs of a comparison, over a time interval [s].
 inline double off_unfiltered(StressRuns const& runs, std::size_t i, std::size_t k, Told of, double from, double to) {
   RmsDifference d(from, to);
   d.add({runs.times(i), (runs.*of)(i)}, {runs.times(k), (runs.*of)(k)});
@@ -37,9 +37,9 @@ inline double rms(std::vector<double> const& times, std::vector<double> const& x
 
 // Ranges and damage of the cycles of the unfiltered axial stress.
 struct Ranges {
-  double count = 0.0, largest = 0.0, equivalent = 0.0;  // ranges [Pa]
+  double count = 0.0, largest = 0.0, equivalent = 0.0;  // number of cycles; largest and equivalent range [Pa]
 };
-inline constexpr double wohler_exponent = 3.0;  // of details of welds
+inline constexpr double wohler_exponent = 3.0;  // exponent of weld details
 inline Ranges ranges_of(std::vector<StressCycle> const& cycles) {
   Ranges r;
   double sum = 0.0;

@@ -7,7 +7,8 @@ namespace chapter4 {
 
 namespace {
 
-// Makes the histories equally spaced: states of a run that controls its step come up to a step after their sample.
+// Interpolates the histories at equal time steps. In a run with step size control, a recorded state is up to one step
+// later than its sampling time.
 void take_equal_steps(StressRuns& runs, double step) {
   ComparedRun& r = runs.comparison.runs[0];
   auto const spaced = [&](std::vector<double>& x) { x = resampled(r.times, x, step, 2.5 * step); };

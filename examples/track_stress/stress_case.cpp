@@ -17,7 +17,7 @@ double cpu_of(auto&& work) {
   return double(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-// The strain of a link by its vibrations under what was recorded, stepped as the run was.
+// Stress of a link with its vibrations under the recorded loads, computed with the integrator of the run.
 DecoupledStress vibrating(Options const& o, BodyRecord const& record) {
   return DecoupledStress::vibrating(structure_of_link(o), record, integrator(o),
                                     {.frame = ReferenceConditions::simply_supported(0, 2)}, loads(o));
@@ -27,7 +27,8 @@ DecoupledStress recovered(Options const& o, BodyRecord const& record) {
   return quasi_static(o, record);
 }
 
-// Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.
+// Completes a run and writes a checkpoint of the first state at or after the time `at` [s] to `file`. Returns the time
+// of this state [s].
 double put_away(Simulation<GeneralisedAlpha>& run, double at, fs::path const& file) {
   double done_at = -1.0;
   while (!run.done()) {
@@ -88,9 +89,9 @@ void restart(Options const& o, Combination const& c) {
   auto rest = resume(scenario.model, y, integrator(o), scenario.options, read_checkpoint(file));
   while (!rest.done()) rest.advance();
   bool const same = x.t == y.t && x.q == y.q && x.v == y.v && x.a == y.a && x.lambda == y.lambda;
-  std::printf("%s: put away at %.4g s, taken up again, run to %.4g s: %s\n", c.name().c_str(), at, y.t,
-              same ? "the same bits" : "NOT the same");
-  if (!same) throw Error("The resumed run ended in another state than the full run.");
+  std::printf("%s: checkpoint at %.4g s, resumed, run to %.4g s: %s\n", c.name().c_str(), at, y.t,
+              same ? "bitwise identical" : "NOT identical");
+  if (!same) throw Error("The final state of the resumed run differs from that of the full run.");
 }
 
 }  // namespace chapter4

@@ -9,11 +9,12 @@ struct Recording {
   std::shared_ptr<LoadRecorder> recorder = {};
   std::optional<BodyHandle<Rigid<>>> link = {};
 };
-// Adds the outputs of the watched link to the observers of each state.
+// Adds an observer of each state, which appends the outputs of a flexible link to `history` or records the loads of a
+// rigid link.
 Recording watch(Scenario<AnyModel>& scenario, WatchedLink const& link, std::shared_ptr<LinkHistory> const& history);
 void recover(Options const& o, Recording const& recording, LinkHistory& history);
 
-// A vehicle under an integrator, as the options give it.
+// Case for `compare`: a vehicle with an integrator and the options of the program.
 template <class I>
 struct StressCase {
   Options const& options;

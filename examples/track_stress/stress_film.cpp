@@ -7,7 +7,7 @@ namespace chapter4 {
 
 namespace {
 
-// A rigid link as the bar that its stress is worked out in.
+// Bars that show rigid links with their decoupled stress in a film.
 class DecoupledLinks {
  public:
   explicit DecoupledLinks(Options const& o) : bar_(m113::link_bar({}, section_height(o))), ring_(outline(bar_)) {
@@ -42,7 +42,7 @@ class DecoupledLinks {
   }
 
  private:
-  static constexpr int pieces = 4;  // as those of flexible links
+  static constexpr int pieces = 4;  // equal to the number of pieces of flexible links
   double place(int k) const { return bar_.length * double(k) / double(pieces); }
   bool is_horn(std::string const& name) const {
     std::size_t const end = name.rfind(" horn");
@@ -51,8 +51,8 @@ class DecoupledLinks {
 
   Bar bar_;
   std::vector<Vec2> ring_;
-  Surface surface_;                                                   // in axes of the link's middle
-  std::map<std::string, std::vector<std::vector<double>>> stresses_;  // of each link, frame and point [Pa]
+  Surface surface_;                                                   // surface in axes of the link's middle
+  std::map<std::string, std::vector<std::vector<double>>> stresses_;  // stress for each link, frame and point [Pa]
 };
 
 }  // namespace

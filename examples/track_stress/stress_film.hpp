@@ -1,19 +1,19 @@
 #pragma once
-// The film of Chapter 4: links coloured by their axial stress, decoupled beside coupled.
+// Film of Chapter 4: links coloured by their axial stress, decoupled next to coupled.
 #include "stress_runs.hpp"
 
 namespace chapter4 {
 
-// A run as a scene of the film of the options, or without a film. Flexible links provide their stress in each frame.
-// For rigid links the loads are recorded at each frame; their stress is computed after the run, with a floating
-// frame, and then the frames are made.
+// Scene of a run in the film of the options. Without a film, the object does nothing. Flexible links provide their
+// stress in each frame. For rigid links the loads are recorded at each frame. After the run the stress of these links
+// is computed with a floating frame, and the frames are recorded.
 class StressScene {
  public:
   StressScene(Options const& o, std::string const& name, AnyVehicle const& vehicle, WatchedLink const& link);
 
   // Scene that records the run; null without a film.
   std::shared_ptr<VehicleScene> const& scene() const { return scene_; }
-  // Adds what is known after the run.
+  // Adds the frames with decoupled stress and the stress history of the watched link after the run.
   void finish(Options const& o, std::vector<double> const& times, LinkHistory const& watched);
 
  private:
@@ -21,8 +21,8 @@ class StressScene {
 
   std::shared_ptr<VehicleScene> scene_;
   AnyModel model_;
-  std::vector<BodyHandle<Rigid<>>> links_;  // that are rigid
-  std::shared_ptr<LoadRecorder> loads_;     // on them
+  std::vector<BodyHandle<Rigid<>>> links_;  // rigid links
+  std::shared_ptr<LoadRecorder> loads_;     // loads on the rigid links
 };
 
 }  // namespace chapter4

@@ -19,26 +19,27 @@ inline constexpr int watched_link = watched_pin;
 struct Options : Settings {
   fs::path viewer, film_file;
   std::string links = "ancf", pins, compare, figure, turn, recovery = "static";
-  std::string files;     // of a finite element link
-  bool surface = false;  // stress in named nodes of its surface, also after a run of rigid links
-  FfrTerms terms = {};   // of floating frames
-  double section = 1.0;  // height of a flexible link's section and of a structure's, of that which has a link's mass
-  double cut_off = 15.0;
-  bool bands = false;  // figures with the range over settings that the thesis does not give
+  std::string files;     // folder of the files of a finite element link
+  bool surface = false;  // true: computes the stress at named nodes of its surface, also after a run with rigid links
+  FfrTerms terms = {};   // terms of the equations of floating frames
+  // Height of a flexible link's section, divided by the height that gives the mass of a rigid link [1].
+  double section = 1.0;
+  double cut_off = 15.0;  // cut-off frequency of the low pass [Hz]
+  bool bands = false;     // true: figures show the range over other values of data that the thesis does not give
   bool halve = false, restart = false, fatigue = false;
 };
 
 inline double section_height(Options const& o) { return o.section * m113::cable_height; }
-// The mass of a flexible link.
+// Mass of a flexible link [kg].
 inline double flexible_mass(Options const& o) { return m113::with_steel_links({}, section_height(o)).link.mass; }
 
 // History of the watched link of a run. The strain of rigid links is computed after the run.
 struct LinkHistory {
-  std::vector<double> strain;   // of the link, change of length over length
-  std::vector<double> bending;  // in the middle: what it adds in the fibre towards the wheels
-  std::map<std::string, std::vector<double>> surface = {};  // von Mises stress in named nodes [Pa]
-  std::vector<double> vibrating;  // strain of a rigid link by the thesis' linear equations of its vibrations
-  bool decoupled = false;         // worked out after the run of a rigid link
+  std::vector<double> strain;   // axial strain of the link: change of length divided by length [1]
+  std::vector<double> bending;  // bending strain in the middle, in the fibre towards the wheels [1]
+  std::map<std::string, std::vector<double>> surface = {};  // von Mises stress at named nodes [Pa]
+  std::vector<double> vibrating;  // strain of a rigid link by the thesis' linear equations of its vibrations [1]
+  bool decoupled = false;         // true: results computed after a run with rigid links
   double recording = 0.0, recovery = 0.0, vibration = 0.0;  // CPU times [s]
 };
 
@@ -57,8 +58,9 @@ struct StressRuns : Runs {
 
 // Selection and outputs of the watched link.
 struct WatchedLink {
-  std::optional<BodyHandle<Rigid<>>> rigid = {};             // recorded, and its strain is worked out after the run
-  std::vector<BodyHandle<Rigid<>>> rigid_links = {};         // of both tracks: so is their stress for a film
+  // Rigid link whose loads are recorded; its strain is computed after the run.
+  std::optional<BodyHandle<Rigid<>>> rigid = {};
+  std::vector<BodyHandle<Rigid<>>> rigid_links = {};         // rigid links of both tracks, whose stress a film shows
   std::function<void(State const&, LinkHistory&)> see = {};  // adds the outputs of a flexible link in a state
 };
 struct StressVehicle {
@@ -69,9 +71,9 @@ struct StressVehicle {
 // Links of one body formulation on pins of one policy.
 struct Combination {
   std::string links, pins;
-  bool usual = false;        // the pins that links have where none are asked for
-  std::string refusal = {};  // why it cannot be; else empty
-  bool turns = true;         // else its pins are fixed to the world's axes
+  bool usual = false;        // true: default pins of these links
+  std::string refusal = {};  // reason for which the combination is impossible; empty if it is possible
+  bool turns = true;         // false: the vehicle cannot turn, because its pins keep their direction in world axes
   std::function<StressVehicle(Options const&, VehicleParts const&)> make = {};
 
   std::string name() const { return usual ? links : links + ", " + pins; }
@@ -82,15 +84,17 @@ inline std::vector<std::string> const all_pins{"constraint", "penalty", "bushing
 // Legend entry of links that deform in the run.
 std::string links_in_words(std::string const& links);
 
-// The run of one formulation.
+// Runs one combination.
 StressRuns run_of(Options const& o, Combination const& c);
-// Runs the first half, writes a checkpoint, and continues from it; the result is bitwise identical to the full run.
+// Completes a run that writes a checkpoint at half of the end time, and resumes another run from this checkpoint.
+// \throws Error unless the final states are bitwise identical.
 void restart(Options const& o, Combination const& c);
 
-// Ideal pins, by an Adams method in independent coordinates; states every `step`.
+// Runs rigid links on ideal pins with an Adams method in independent coordinates. The histories have a state every
+// `step`.
 StressRuns rigid_links_by_adams(Options o);
 
-// Of each formulation of the links, in the order of all_pins.
+// Combinations of each formulation of the links with all pins, in the order of all_pins.
 std::vector<Combination> rigid_links();
 std::vector<Combination> cable_links();
 std::vector<Combination> modal_links();

@@ -13,8 +13,8 @@ namespace {
 struct Surface {
   std::shared_ptr<m113::FiniteElementLink const> link;
   NodalStress stress;
-  MatX by_modes;  // stress (6k×n) by the coordinates of `link`
-  VecX strain;    // (n) of the middle two thirds: change of the distance of two planes of nodes over their distance
+  MatX by_modes;  // (6k×n) stress at the k named nodes for unit coordinates of the n shapes of `link` [Pa]
+  VecX strain;    // (n) axial strain of the middle two thirds: relative change of the distance of two planes of nodes
   VecX bending;   // (n) strain by bending in the middle, in the fibre towards the wheels
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A finite element link, and the stress in named nodes of its surface, decoupled and coupled.
+// Finite element link, and the stress at named nodes of its surface, decoupled and coupled.
 #include <polybody/run/body_record.hpp>
 
 #include "stress_runs.hpp"
@@ -10,12 +10,12 @@ struct FiniteElementLink;
 
 namespace chapter4 {
 
-// Of the files link.*.mtx and link.*.txt in the folder that the options name; read once.
+// Link from the files link.*.mtx and link.*.txt in the folder `o.files`. The files are read once.
 std::shared_ptr<m113::FiniteElementLink const> finite_element_link(Options const& o);
 
-// Stress after a run of rigid links, quasi-static.
+// Adds the quasi-static stress for the record of a rigid link to h, after the run.
 void add_surface(LinkHistory& h, Options const& o, BodyRecord const& record);
-// Stress, strain and bending at one more moment of a run of such links, deformed by q.
+// Appends stress, strain and bending of a finite element link with the deformation coordinates q to h.
 void add_surface(LinkHistory& h, Options const& o, Eigen::Ref<VecX const> const& q);
 
 }  // namespace chapter4

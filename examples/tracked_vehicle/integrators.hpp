@@ -1,5 +1,5 @@
 #pragma once
-// The integrators of --integrator.
+// Integrators that the option --integrator selects.
 #include <polybody/polybody.hpp>
 #include <polybody/run/any_model.hpp>
 

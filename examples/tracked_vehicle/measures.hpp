@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of the vehicle's runs, in lines.
+// Results of the vehicle's runs, printed in lines.
 #include <polybody/signals/rms_difference.hpp>
 #include <polybody/vehicle/track_checks.hpp>
 
@@ -37,8 +37,8 @@ inline double force_difference(Runs const& first, std::size_t k, Runs const& run
   return d.value();
 }
 
-// Largest distance of the path of the watched link, relative to the chassis, from the path of the first run [m]: in
-// the upper strand between sprocket and idler, and elsewhere.
+// Largest distance of the path of the watched link, relative to the chassis, from the path of the first run [m].
+// `slack`: in the upper run between sprocket and idler; `taut`: elsewhere.
 struct PathDistance {
   double taut = 0.0, slack = 0.0;
 };
@@ -67,7 +67,8 @@ inline double most_apart(Runs const& runs, std::size_t run, std::string const& o
                                   r.output_names.begin())];
 }
 
-// Mean yaw rate, and radius of the chassis' way, from a time on; beside those of tracks that roll without skidding.
+// Mean yaw rate and path radius of the chassis after a time. `rolling_rate` and `rolling_radius` are the values for
+// tracks that roll without slip.
 struct Turning {
   double rate = 0.0, radius = 0.0, rolling_rate = 0.0, rolling_radius = 0.0;  // [rad/s], [m]
 };
@@ -84,15 +85,14 @@ inline Turning turning(Settings const& o, Runs const& runs, std::size_t k, doubl
           std::abs((o.left + o.right) / apart) * m113::track_y};
 }
 
-// ---------------------------------------------------------------------------------------------------- lines Distance
-// of tracks that roll without slip, at time t [m].
+// Forward distance of tracks that roll without slip until the time t [m].
 inline double rolled(Settings const& o, double t) {
   Ramp drive = m113::drive(o.speed, 0.1);
   drive.duration = o.ramp;
   return drive.integral(t) * m113::rolling_radius;
 }
 
-// Heights within the first second, before the drives begin.
+// Vertical displacement of the chassis in the first second, before the drives begin.
 inline Span first_second(Runs const& runs, std::size_t k, double from = 0.0) {
   return span_of(runs.times(k), runs.history(k, "vertical displacement [m]"), from, 1.0);
 }
@@ -116,7 +116,7 @@ inline void motion_line(Lines& lines, Settings const& o, Runs const& runs, std::
   lines("motion, " + name_of(runs, k), numbers);
 }
 
-// Beside the first run of `runs`.
+// Line with the distance of the path of run k from the path of the first run.
 inline void path_line(Lines& lines, Runs const& runs, std::size_t k) {
   PathDistance const off = path_distance(runs, k);
   lines("path, " + name_of(runs, k), {{"taut", 1e3 * off.taut, 1, "mm"}, {"slack", 1e3 * off.slack, 1, "mm"}});
@@ -139,7 +139,7 @@ inline std::vector<Value> force_differences(Runs const& runs, std::size_t k) {
 // Force in the watched pin, filtered and unfiltered, and its difference from the first run of `runs`.
 inline void force_line(Lines& lines, Runs const& runs, std::size_t k) {
   std::vector<Value> numbers;
-  auto const filters = [&](std::size_t run, double least) {  // which need equal steps
+  auto const filters = [&](std::size_t run, double least) {  // true if the run is long enough and has equal steps
     return runs.times(run).back() >= least && !runs.comparison.runs[run].run.stopped;
   };
   double const end = runs.times(k).back();

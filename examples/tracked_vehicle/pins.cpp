@@ -6,7 +6,8 @@ namespace chapter3 {
 
 namespace {
 
-// The run under an integrator that controls its step, or does not, with the steps that are its own.
+// Runs the vehicle with an integrator, with fixed steps or with step size control. `step` is the default of the step
+// [s].
 template <class I>
 Runs run_by(Options o, Pins const& pins, I const& integrator, double step = implicit_step) {
   if (o.step == 0.0) o.step = step;

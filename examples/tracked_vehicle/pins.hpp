@@ -7,12 +7,12 @@
 namespace chapter3 {
 
 struct Options : Settings {
-  Options() { step = 0.0; }  // the integrator's own
+  Options() { step = 0.0; }  // default step of the integrator
 
   std::string track = "constraint", compare, figure, turn, integrator = "alpha";
   double penalty = m113::pin_stiffness;
   fs::path viewer, film_file;
-  double tolerance = 0.0;  // of Newton's corrections, or of the error of a step; 0: the integrator's own
+  double tolerance = 0.0;  // tolerance of Newton's method or of the error of a step; 0: default
   bool halve = false;
 };
 
@@ -22,9 +22,9 @@ inline constexpr double implicit_step = 5e-4;  // [s]
 struct Pins {
   std::string name;
   MakeVehicle make;
-  double bearable;  // longest step of explicit methods: RungeKutta4's end at 2.8 over the fastest rate, which
-                    // `track_times` prints [s]
-  std::string cannot_turn = {};  // why --turn is refused
+  // Longest stable step of RungeKutta4 [s]: 2.8 divided by the fastest rate, which `track_times` prints.
+  double bearable;
+  std::string cannot_turn = {};  // reason for which --turn is refused; empty: the vehicle can turn
 
   Runs run(Options const& o) const;
   // Count of coordinates and constraints as in the thesis, in which the ground is a body.

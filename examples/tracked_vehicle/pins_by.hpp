@@ -1,5 +1,5 @@
 #pragma once
-// Pins of one formulation: what a file of pins compiles.
+// Pins of one formulation. Each file of a formulation compiles one such function.
 #include "../any_vehicle.hpp"
 #include "integrators.hpp"
 #include "pins.hpp"

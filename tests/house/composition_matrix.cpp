@@ -205,32 +205,32 @@ std::string composition() {
       integrator_policy{.merges_rows = true};
   for (Table* t : {&geometry_policy, &integrator_policy}) t->heads(policies);
   for (Table* t : {&geometry_body, &policy_body, &integrator_body}) t->heads(bodies);
-  integrator_policy.columns.push_back("`Constraint` of velocity rows");
+  integrator_policy.columns.push_back("`Constraint` with nonholonomic equations");
   std::apply([&](auto... g) { (geometry_row(geometry_policy, geometry_body, g), ...); }, geometries);
   std::apply([&](auto... p) { (policy_row(policy_body, p, geometries), ...); }, policies);
   std::apply([&](auto const&... i) { (integrator_row(integrator_body, integrator_policy, i), ...); }, integrators);
 
   static_assert(ConstrainedCoordinates<Spherical>::needs == MarkerKind::frame);
   return geometry_policy.text("geometry") +
-         "\nv: nonholonomic equations have no position level for a compliant force. f: the geometry names no free "
-         "directions, which a bushing needs. j: the free motion has no joint coordinates. l: the equations are not "
-         "linear in the coordinates of ANCF bodies.\n\n" +
-         geometry_body.text("geometry, by `Constraint`") +
+         "\nv: a compliant policy needs equations between positions, and the geometry has nonholonomic equations. f: a "
+         "bushing needs the free directions of the geometry, which are not defined. j: the free motion of the geometry "
+         "has no joint coordinates. l: the equations are not linear in the coordinates of ANCF bodies.\n\n" +
+         geometry_body.text("geometry, with `Constraint`") +
          "\n✓: either marker. 2nd: only the second marker. n: the markers of the body do not provide the axis or "
-         "frame. w: the body is of another dimension. The ground can be used everywhere. A bushing needs a frame at "
-         "its first marker.\n\n" +
-         policy_body.text("policy, some geometry") +
+         "frame. w: the geometry is for the plane and the body for space, or vice versa. The ground can be used "
+         "everywhere. A bushing needs a frame at its first marker.\n\n" +
+         policy_body.text("policy, with any geometry") +
          "\nr: joint coordinates need a body with a frame, and `JointCoordinatesBy<ArticulatedBody>` needs rigid "
-         "bodies. l: "
-         "points are not linear in the coordinates.\n\n" +
+         "bodies. l: positions of points are not linear in the coordinates of the body.\n\n" +
          integrator_body.text("integrator") +
          "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation. m: the mass "
          "matrix is not constant. e: the coordinates are not additive, or the mean force over a step does not "
          "exist.\n\n" +
          integrator_policy.text("integrator") +
          "\ns: the method has no stabilisation for constraint equations. m: the mass matrix of joint coordinates is "
-         "not constant. e: the method needs joints without elimination, with a position level, and forces that are "
-         "linear in it. t: the three stages are solved together.\n";
+         "not constant. e: the method needs joints without elimination and without nonholonomic equations, and forces "
+         "that are linear in g and ġ. t: the method solves its three stages in one linear system, which "
+         "`ArticulatedBody` cannot solve.\n";
 }
 
 std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n",

@@ -45,7 +45,7 @@ def comparison(text):
     for row in numbers.values():
         if "end: lag of the tip [m]" in row:
             row["ahead at the end"] = -row["end: lag of the tip [m]"]
-            row["lag in mm"] = 1e3 * row["most off the first: lag of the tip [m]"]
+            row["lag in mm"] = 1e3 * row["largest difference from the first: lag of the tip [m]"]
     return numbers
 
 
@@ -63,8 +63,9 @@ def meshes(figures):
         widest = [seen[f"{name} widest"] for name in figures]
         numbers["all"] = {f"{kind} {share}": choose(w[share] for w in widest) for share in ("percent left", "percent interpolation")
                           for kind, choose in (("least", min), ("most", max))}
-        head = ["figure", "t [s]", "largest gap of a node [m]", "of it strains", "interpolation", "rms gap", "left by the best rigid displacement",
-                "height of the arcs", "turn of that displacement [rad]"]
+        head = ["figure", "t [s]", "largest distance of a node [m]", "part of the strains [m]", "part of the interpolation [m]", "rms distance [m]",
+                "rms distance after the best rigid displacement [m]", "largest height of an arc above its chord [m]",
+                "rotation of the best rigid displacement [rad]"]
         return {**numbers, **seen}, markdown(head, rows)
 
     return read

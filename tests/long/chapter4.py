@@ -9,8 +9,8 @@ PINS = ["constraint", "penalty", "bushing", "linear", "recursive"]
 REASONS = {
     "the frames of its ends are not linear in its coordinates": "not linear",
     "it has no frame that a joint could carry": "no frame to carry",
-    "its ends have an axis and no frame, so that nothing tells where a pin points": "no frame at its ends",
-    "its pins share a slope across the track that is fixed in the world": "fixed in the world",
+    "its ends have an axis and no frame, so the axis of a pin is not defined": "no frame at its ends",
+    "at its pins, neighbouring links share a slope vector across the track, which is constant in world axes": "fixed in the world",
 }
 
 
@@ -100,9 +100,9 @@ LINKS = ["rigid", "ancf", "ffr", "lrvf", "beam", "continuum"]
 links = rows_of({
     "strain, mean [10⁻⁵]": lambda of: f"{of['strain']:.3f}",
     "(T₀ + m v²/p)/EA [10⁻⁵]": lambda of: f"{of['running strain']:.3f}",
-    "off the ANCF cables, rms from 1 s on [%]": lambda of: f"{of['off from 1 s']:.1f}" if "off from 1 s" in of else "–",
-    "energy not accounted for [%]": lambda of: f"{of['energy']:.3f}",
-    "steps halved, of 10⁴": lambda of: f"{of['halved']:.0f}",
+    "difference from the ANCF cables, rms from 1 s on [%]": lambda of: f"{of['off from 1 s']:.1f}" if "off from 1 s" in of else "–",
+    "unexplained energy [%]": lambda of: f"{of['energy']:.3f}",
+    "halved steps, of 10⁴": lambda of: f"{of['halved']:.0f}",
     "cycles of stress": lambda of: f"{of['cycles']:.0f}",
     "largest range, equivalent range [MPa]": lambda of: f"{of['largest range']:.2f}, {of['equivalent range']:.3f}",
 })
@@ -139,15 +139,18 @@ def worst_term(column, left_out=()):
 
 
 surface = columns(28, ["mean decoupled", "mean coupled", "most decoupled", "most coupled", "apart from 1 s", "apart", "apart, low pass"],
-                  ["node", "mean, decoupled", "coupled", "at most, decoupled", "coupled", "difference, rms from 1 s on [%]", "below 15 Hz [%]"],
+                  ["node", "mean, decoupled", "mean, coupled", "maximum, decoupled", "maximum, coupled", "difference, rms from 1 s on [%]",
+                   "difference below 15 Hz [%]"],
                   {"mean decoupled": 3, "mean coupled": 3, "most decoupled": 3, "most coupled": 3, "apart from 1 s": 1, "apart, low pass": 1})
 terms = columns(52, ["strain", "low pass", "raw", "bending", "energy"],
-                ["floating frames with", "strain [10⁻⁵]", "off, low pass [%]", "off, unfiltered [%]", "bending off [%]", "energy unaccounted for [%]"],
+                ["floating frames with", "strain [10⁻⁵]", "strain difference below 15 Hz [%]", "strain difference, unfiltered [%]",
+                 "bending difference [%]", "unexplained energy [%]"],
                 {"strain": 4, "low pass": 2, "raw": 2, "bending": 2, "energy": 4})
 ensemble = columns(26, ["decoupled", "vibrating", "coupled", "ratio", "off", "vibrating off", "largest decoupled", "largest coupled",
                         "equivalent decoupled", "equivalent coupled"],
-                   ["setting", "decoupled", "by vibrations", "coupled", "ratio", "off, rms [%]", "largest range [MPa]: decoupled", "coupled",
-                    "equivalent: decoupled", "coupled"],
+                   ["setting", "decoupled", "decoupled, with vibrations", "coupled", "ratio of decoupled to coupled", "difference, rms [%]",
+                    "largest range, decoupled [MPa]", "largest range, coupled [MPa]", "equivalent range, decoupled [MPa]",
+                    "equivalent range, coupled [MPa]"],
                    {"decoupled": 3, "vibrating": 3, "coupled": 3, "ratio": 3, "off": 1, "largest decoupled": 2, "largest coupled": 2,
                     "equivalent decoupled": 3, "equivalent coupled": 3})
 

@@ -34,8 +34,8 @@ SIDES = [(0, -1), (1, 0), (0, 1), (-1, 0)]
 PLACES = [(*p, z) for at, zs in ((CORNERS, (-1, 1)), (SIDES, (-1, 1)), (CORNERS, (0,))) for z in zs for p in at]
 
 GAUSS = [(-(0.6**0.5), 5 / 9), (0.0, 8 / 9), (0.6**0.5, 5 / 9)]
-PULL, LIFT = 100.0e3, 20.0e3  # [N] on the front face, along x and z
-UNEVEN = 0.5  # the pull is 1 + UNEVEN y / half the width of its mean
+PULL, LIFT = 100.0e3, 20.0e3  # forces on the front face along x and z [N]
+UNEVEN = 0.5  # the pull at y is its mean times 1 + UNEVEN 2y/width
 
 
 def shape(i, at):

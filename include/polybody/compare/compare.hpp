@@ -25,14 +25,14 @@ struct Meshed {
   static constexpr int elements = count;  ///< number of elements, the second argument of `from`
 };
 
-/// Floating frame of a bar with `count` elements, reduced to the static shapes of its ends and `inner` modes between
-/// them (the option `modes` of `Ffr`).
+/// Body in a floating frame from a bar with `count` elements. The nodal coordinates are reduced to the static shapes of
+/// both ends and `inner` modes with fixed ends (the option `modes` of `Ffr`).
 template <class B, int count, int inner>
   requires(count > 0 && inner >= 0)
 struct Modal {
   using BodyType = B;                     ///< body without mesh
   static constexpr int elements = count;  ///< number of elements, the second argument of `from`
-  static constexpr int modes = inner;     ///< number of modes between the ends
+  static constexpr int modes = inner;     ///< number of modes with fixed ends
 };
 
 namespace detail {
@@ -124,7 +124,8 @@ std::string unique_name(std::vector<ComparedRun> const& earlier, std::string con
   return name;
 }
 
-/// Checks that the outputs of a run have distinct, nonempty names, and that these are the names of the `earlier` runs.
+/// Checks that the outputs of a run have distinct, nonempty names, and that these names are the names in the `earlier`
+/// runs.
 /// \throws InvalidInput otherwise.
 template <class = void>
 void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earlier) {
@@ -185,7 +186,7 @@ void drop_incomplete_state(ComparedRun& run) {
 }
 
 /// Completes a run and records its first and last state, and the states between them that `sampling` selects. An
-/// exception ends the run; its message is stored in `failure`. The CPU time contains the steps only.
+/// `Error` ends the run; its message is stored in `failure`. The CPU time contains the steps only.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
   RunSampling samples(run.state().t, sampling);
@@ -255,7 +256,8 @@ void compare_with_first(Comparison& c) {
 /// objects, because some policies have parameters without defaults. If `simulate` or an output throws an `Error`, the
 /// run stores the message in `failure` and keeps its results so far; the other runs continue.
 /// `require_complete(compare(…))` throws if a run failed.
-/// \throws InvalidInput if the names of the outputs differ between formulations; exceptions of `make_case`.
+/// \throws InvalidInput if the names of the outputs are empty, repeated, or different between formulations, or if a
+/// sampling interval is negative; exceptions of `make_case`.
 template <class C, class... Fs>
   requires(ComparisonCase<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {

@@ -95,8 +95,8 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
                                {"degrees of freedom", double(run.problem_size.degrees_of_freedom)},
                                {"multiplier rows", double(run.problem_size.rows)},
                                {"steps", double(run.run.steps)},
-                               {"Newton iterations a step", double(run.run.iterations) / steps},
-                               {"factorisations a step", double(run.run.factorisations) / steps},
+                               {"Newton iterations per step", double(run.run.iterations) / steps},
+                               {"factorisations per step", double(run.run.factorisations) / steps},
                                {"CPU time [s]", run.cpu},
                                {"CPU ratio to the first", run.cpu / std::max(first.cpu, 1e-9)},
                                {"position violation", run.violation.position},
@@ -107,13 +107,13 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
   for (std::size_t i = 0; i < run.outputs.size(); ++i) {
     column.push_back({"end: " + run.output_names[i],
                       run.outputs[i].empty() ? std::numeric_limits<double>::quiet_NaN() : run.outputs[i].back()});
-    column.push_back({"most off the first: " + run.output_names[i], run.difference[i]});
+    column.push_back({"largest difference from the first: " + run.output_names[i], run.difference[i]});
   }
   return column;
 }
 
 /// Histories of a run: violations, energies and the largest joint force, then the outputs. An output with the name of
-/// another history replaces that history.
+/// one of these histories replaces this history.
 template <class = void>
 std::vector<History> histories(ComparedRun const& run) {
   std::vector<History> all;

@@ -45,9 +45,9 @@ SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAl
   return s;
 }
 
-/// Points r(s) = start + ∫ R e₁ ds of the curve that the field `rotation`, s ↦ R(s), implies, at s = 0, length/pieces,
-/// 2 length/pieces, … [m]. Each piece is integrated with five Gauss points. The derivative of the field may jump
-/// between pieces.
+/// Points r(s) = start + ∫ R e₁ ds [m] of the curve that the field R(s) = `rotation(s)` implies. The points are at the
+/// multiples of length/pieces from 0 to `length`. Each piece is integrated with five Gauss points. The derivative of
+/// the field may jump between pieces.
 /// \throws InvalidInput if the length is not positive, or if pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>

@@ -97,8 +97,8 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
 }
 
 /// Position mesh and implied curve of a spatial beam at the coordinates q. The rotation field is that of the beam's
-/// interpolation. If the reference is curved, the position mesh is the polygon through the nodes, and the implied curve
-/// includes the curvature of the reference.
+/// interpolation. If the reference configuration is curved, the position mesh is the polygon through the nodes, and the
+/// implied curve includes the curvature of the reference configuration.
 template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
 SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
   SpatialMeshDiagnostics d;

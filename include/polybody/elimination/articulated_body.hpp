@@ -6,9 +6,9 @@
 /// due to the twist x_p of the parent, and S contains the motions of the joint. After the elimination of its
 /// descendants, a body has the equation K̂ x + C x_p = f. With the blocks B = K(parent, body) and C = K(body, parent):
 ///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
-///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
-/// A root has no parent, and u are its own generalised velocities. The remaining constraint equations, with Jacobian G,
-/// are solved with their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
+///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf),
+/// with the generalised forces r of the joint. A root has no parent, and u are its own generalised velocities. The
+/// remaining constraint equations, with Jacobian G, are solved with their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
 
 #include <polybody/elimination/reduction.hpp>
 #include <polybody/math/sequence.hpp>

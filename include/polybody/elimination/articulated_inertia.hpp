@@ -36,7 +36,7 @@ template <class T>
 struct ArticulatedInertia {
   T mass[6], first[9], second[6];  ///< M, H (by columns) and Θ
 
-  /// Sets M and H for a body with mass `m` and first moment `mc`. The caller sets Θ.
+  /// Sets M and H for a body with mass `m` [kg] and first moment `mc` (3) [kg m]. The caller sets Θ.
   void set(double m, T const* mc) {
     for (int i = 0; i < 6; ++i) mass[i] = T(0.0);
     mass[0] = mass[3] = mass[5] = T(m);

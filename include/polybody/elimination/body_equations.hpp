@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Sparse equations that replace the dense equations in joint coordinates. Their unknowns are all velocities except
-/// those that depend on others through linear joints, and the multipliers of all constraint equations except those of
-/// linear joints. Matrix entries of dependent coordinates are distributed among the independent coordinates.
+/// Sparse equations that replace the dense equations in joint coordinates. The unknowns are the velocities of all
+/// bodies, except velocities that linear joints make dependent, and the multipliers of all constraint equations except
+/// those of linear joints. Matrix entries of dependent coordinates are distributed among the independent coordinates.
 
 #include <array>
 
@@ -12,7 +12,7 @@
 
 namespace polybody::detail {
 
-/// The class is a template so that programs without joint coordinates do not compile it.
+/// Sparse equations of all bodies. As a template, the class is compiled only in programs with joint coordinates.
 template <class = void>
 class BodyEquationsOf {
  public:

@@ -139,7 +139,7 @@ void local_rate(JointTreeOf<T> const& tree, VecXOf<T> const& delta, VecXOf<T> co
   });
 }
 
-/// `rate` = q˙ of the joint coordinates; for a spherical motion ½ q ∘ (0, Ω).
+/// `rate` = q˙ of the joint coordinates; for a spherical motion ½ q ∘ (0, Ω), with its three velocities Ω.
 template <class T>
 void coordinate_rates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T>& rate) {
   detail::for_each_deformation(tree, [&](Index qn, Index vn) { rate[qn] = v[vn]; });

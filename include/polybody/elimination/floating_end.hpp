@@ -14,7 +14,7 @@ namespace polybody {
 /// Marker of a body with a floating frame, with erased body type. \tparam T scalar type of the body's coordinates
 template <class T = double>
 struct FloatingEndOf {
-  /// Function that evaluates the marker of `end`. q and v are the coordinates and velocities of its body only.
+  /// Function that evaluates the marker of `end`. q and v are those of the body of `end` only.
   using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, MarkerKinematics<T>& out);
 
   Publish evaluate_marker = nullptr;             ///< function for the types of `body` and `point`

@@ -114,7 +114,7 @@ namespace polybody {
 // Rigid body on a revolute joint: the most frequent case of `JointTree`, without a loop over the motions of a joint.
 
 /// Fills in `body.turn` if the joint permits a single rotation only. The sign of the quaternions `still` and `turning`
-/// is that with which the quaternion of the body agrees with its value in `reference`, the full coordinates of the
+/// is chosen so that the quaternion of the body agrees with its value in `reference`, the full coordinates of the
 /// reference state. \param parent index of the first coordinate of the parent; −1: the ground
 template <class = void>
 [[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {

@@ -6,6 +6,7 @@
 /// coordinate. The multipliers follow from the balance Cᵀλ = −r of the dependent coordinates with the same factors
 /// m_kj:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
+/// The index dk denotes the dependent coordinate of row k.
 
 #include <polybody/math/errors.hpp>
 #include <polybody/math/index_map.hpp>

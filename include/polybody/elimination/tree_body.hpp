@@ -154,6 +154,7 @@ Mat<T, 3, 3> turn_about(int k, T angle) {
 }
 
 /// Angle [rad] of the rotation turn(axis) in R = turn(axis), or in R = turn(axis) turn(other) if `followed` is true.
+/// \param k index of the rotation in `motions`
 template <class T>
 double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions const& motions, int k) {
   int const i = (axis + 1) % 3, j = (axis + 2) % 3;

@@ -6,7 +6,8 @@
 /// S, so that only scalars are inverted. With the acceleration x = [a; α] of a body at its reference point
 /// (tree_recursion.hpp), in world axes,
 ///   x = X x_p + Σ S u̇ + c,   X x = [a + α × d; α],   [f; m] = I x + p,   p ← p + I c.
-/// Each degree of freedom, from the last to the first, gives
+/// c is the acceleration for u̇ = 0 and x_p = 0, I the inertia, and p the wrench for x = 0. Each degree of freedom,
+/// from the last to the first, gives
 ///   D = Sᵀ I S,  w = −Sᵀ p,   I ← I − (I S) D⁻¹ (I S)ᵀ,  p ← p + (I S) D⁻¹ w,
 /// then for the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x). In world axes the
 /// articulated inertias need no rotation from body to body.

@@ -29,7 +29,7 @@ struct TreeLink {
   double entry[9], arm[3];           ///< axes and origin [m] of the joint's frame, in the axes of the parent's joint
   double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
   double centre[3];                  ///< centre of mass, from the reference point [m]
-  double full_axes[9];               ///< axes of the body's velocities (3×3 by columns)
+  double full_axes[9];               ///< axes of the body in those of the joint's frame (3×3 by columns)
 };
 
 /// Computes the constants of `body`. \param parent null for the ground

@@ -3,8 +3,8 @@
 /// Tangent of an implicit step of a tree of rigid bodies under weight, eliminated one degree of freedom after the other
 /// from the tips to the roots. The tangent is the derivative of Tᵀ(M(T u̇ + b) − f) if a change y of the degrees of
 /// freedom changes coordinates by ck y, velocities by cd y and accelerations by cm y. The tangent is exact: it contains
-/// inertia, Coriolis and centrifugal terms, and the geometric stiffness of rotating joints under tension. It is derived
-/// here like the derivatives of inverse dynamics in [Carpentier & Mansard 2018].
+/// inertia, Coriolis and centrifugal terms, and the geometric stiffness of rotating joints under tension. The
+/// derivation follows the derivatives of inverse dynamics in [Carpentier & Mansard 2018].
 ///
 /// Let δv and δa be the changes of [v; ω] and of its rate in the axes of a body, in which positions do not change. Let
 /// v₀ and a₀ be the motion and the acceleration of the carrier of the body; an acceleration of the ground represents

@@ -15,7 +15,7 @@ struct AxialSpring {
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
   double preload = 0.0;        ///< P, force at s = 0 [N]
-  Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a's body
+  Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a
 
   template <class = void>  // compiled where it is used
   void check(std::string const& name) const {

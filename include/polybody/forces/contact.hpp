@@ -9,8 +9,8 @@
 namespace polybody {
 
 /// Weight of one face in a contact, near the boundary between two faces of a body. The force and the potential of a
-/// face are multiplied by its weight `share`. A weight that varies with the position adds the force −(∫N dd)
-/// ∂share/∂place on a and the opposite force on b.
+/// face are multiplied by its weight `share`. A weight that varies with the position adds the force −U ∂share/∂place on
+/// a, with the potential U of the normal force, and the opposite force on b.
 template <StateScalar T>
 struct ContactBlend {
   T share = T(1.0);                            ///< weight of this face, in [0, 1]
@@ -106,7 +106,8 @@ struct Contact {
   {
     return friction.coefficient == 0.0 && normal.is_lossless();
   }
-  /// True if the shapes touch neither at frames `from` nor at frames `to`, but on the straight line between them.
+  /// True if the shapes touch neither at the frames `from` of a and b nor at the frames `to`, but on the straight path
+  /// between them.
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const
     requires requires(G const& shape) { shape.passes(from, to); }
   {
@@ -170,9 +171,10 @@ struct Contact {
 
   /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`.
   /// J = [1, −ρ×] with the vector ρ from the marker to the point, and N′ = ck ∂N/∂d + cd ∂N/∂ḋ.
-  /// F′ = cd μ N/√(v² + v_s²) with the slip velocity v is the secant of the friction, which is never less than its
-  /// derivative. Newton's method therefore approaches v = 0 from one side and does not overshoot. The rotation of n,
-  /// the change of F_t with N, and changes of the weights of faces are neglected.
+  /// F′ = cd μ N/√(v² + v_s²) with the slip velocity v is cd times the ratio of friction force and slip velocity. This
+  /// secant slope is never less than the derivative of the friction force. Newton's method therefore approaches v = 0
+  /// from one side and does not overshoot. The rotation of n, the change of F_t with N, and changes of the weights of
+  /// faces are neglected.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
@@ -257,7 +259,7 @@ struct SphereOnPlane {
   }
 };
 
-/// Spheres about both markers. Concentric spheres have no normal.
+/// Spheres about both markers. Concentric spheres have no normal and therefore no contact force.
 struct SphereOnSphere {
   static constexpr MarkerKind needs = MarkerKind::point;
   Required<double> radius_a;  ///< radius of the sphere about marker a [m]
@@ -277,7 +279,7 @@ struct SphereOnSphere {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::sphere(b.r, radius_a + radius_b);
   }
-  /// True if the spheres pass through each other between these frames.
+  /// True if the spheres pass through each other on the way from the frames `from` to the frames `to` of a and b.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     return detail::passes_through(from[0].r - from[1].r, to[0].r - to[1].r, radius_a + radius_b);
@@ -293,8 +295,8 @@ struct SphereOnSphere {
   }
 };
 
-/// Sphere of radius `radius` about marker a on the outside of a cylinder about the z axis of marker b. Use the radius
-/// zero for points of a belt.
+/// Sphere of radius `radius` about marker a on the outside of an infinitely long cylinder about the z axis of marker b.
+/// Use the radius zero for points of a belt.
 struct SphereOnCylinder {
   static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
@@ -315,7 +317,7 @@ struct SphereOnCylinder {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::cylinder(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius + cylinder);
   }
-  /// True if the sphere passes through the cylinder between these frames.
+  /// True if the sphere passes through the cylinder on the way from the frames `from` to the frames `to` of a and b.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     auto const across = [](Frame<double> const(&f)[2]) {

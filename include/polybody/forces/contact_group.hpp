@@ -16,9 +16,9 @@ namespace polybody {
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.add_partner(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
 /// A law is a force element of two markers: the first is one of the many, the second is a partner. A law is evaluated
-/// only if its `may_touch(first, second)` is true. This test should cost little more than the computation of a
-/// distance. If all laws have `reach(second)` (`HasReach`), several markers are tested at once with SIMD
-/// operations.
+/// only if its `may_touch(first, second)` returns true for the frames of both markers. This test should cost little
+/// more than the computation of a distance. If all laws have `reach(second)` (`HasReach`), several markers are tested
+/// at once with SIMD operations.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
@@ -60,18 +60,19 @@ class ContactGroup {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
   }
 
-  /// Calls visit(i, marker, law) for each marker i of the many and each partner, at any distance.
+  /// Calls visit(i, marker, law) for each marker i of the many and each partner, at any distance. `marker` is the index
+  /// of the partner's marker.
   template <class Visit>
   void for_each_candidate(Visit&& visit) const {
     for (Index i = 0; i < many_; ++i) for_each_partner([&](auto const& few) { visit(i, few.marker, few.law); });
   }
-  /// Calls visit(i, marker, law) for the pairs with `may_touch` true; frame(k) is the frame of marker k.
+  /// Calls visit(i, j, law) for the pairs with `may_touch` true: marker i of the many and the partner's marker j.
+  /// frame(k) is the frame of marker k.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// Overload for the markers [begin, end) of the many. frame(i) is the frame of marker i, and visit(i, j, law) is
-  /// called for the pairs with `may_touch` true.
+  /// Overload for the markers i in [begin, end) of the many.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))
@@ -120,7 +121,8 @@ class ContactGroup {
       bit <<= 1;
     });
   }
-  /// Visits the partners in `few`, which have the same law type, if they may touch marker i. Removes the bits of `few`.
+  /// Visits the partners in `few`, which have the same law type, if they may touch marker i. Removes the bits of these
+  /// partners from `bits`.
   template <class Few, class FrameOf, class Visit>
   static void visit_near(Few const& few, FrameOf& frame, Visit& visit, Index i, std::uint64_t& bits) {
     std::size_t const n = few.size();

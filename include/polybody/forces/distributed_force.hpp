@@ -16,10 +16,10 @@ struct BarRange {
   Required<Index> pieces;     ///< number of equal pieces, at least 1, with two point forces each
 };
 
-/// Applies the distributed force `per_length` [N/m] to a range of a bar, dead or following the section, as two point
-/// forces on each piece. The result is exact for shapes up to third order if each element has its own piece. The
-/// forces are named "`name`, point 1" and so on, or by the next unused names. The force types of the model must
-/// include `PointForce<Law>`. Returns the handles of the forces.
+/// Applies the distributed force `per_length` [N/m], a dead or follower load, to a range of a bar as two point forces
+/// on each piece. For a dead load, the generalised forces are exact for shape functions up to third order if each
+/// element has its own piece. The forces are named "`name`, point 1" and so on; without a name, the model names them.
+/// The force types of the model must include `PointForce<Law>`. Returns the handles of the forces.
 /// \throws InvalidInput for a range that is empty or outside the bar, or for less than one piece.
 template <class M, class B, TimeFunction Law = Constant>
 auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Concept of a force element: wrenches on its markers as a function of their frames. Dual numbers provide its
-/// tangent.
+/// Concept of a force element: wrenches on its markers as a function of their frames. Dual numbers provide the
+/// tangent of the wrenches.
 
 #include <array>
 

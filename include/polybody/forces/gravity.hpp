@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Uniform gravitational field of a model. Every body computes its weight from it.
+/// Uniform gravitational field of a model. Every body computes its weight from this field.
 struct Gravity {
   Vec3 g = Vec3::Zero();  ///< (3) acceleration of gravity, world axes [m/s²]
 

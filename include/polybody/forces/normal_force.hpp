@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Normal force law: force N(d, ḋ) [N], derivative and potential ∫ N(d, 0) dd [J]. The derivative ck ∂N/∂d + cd ∂N/∂ḋ
+/// Normal force law: force N(d, ḋ) [N], derivative and potential ∫₀ᵈ N(x, 0) dx [J]. The derivative ck ∂N/∂d + cd ∂N/∂ḋ
 /// is never negative; ck and cd are given coefficients.
 template <class N>
 concept NormalForce = requires(N const law, double d, double rate, std::string const name) {
@@ -88,7 +88,7 @@ struct SpringDamperContact {
     if (stiffness * d + c * rate <= 0.0) return 0.0;
     return ck * (stiffness + (begins && rate > 0.0 ? damping * rate / onset : 0.0)) + cd * c;
   }
-  /// Stored energy at penetration d [m], without damping [J].
+  /// Stored energy ∫₀ᵈ N(x, 0) dx [J] at penetration d [m].
   template <StateScalar T>
   T potential(T const& d) const {
     return d * d * (0.5 * stiffness);
@@ -115,7 +115,7 @@ struct HertzContact {
   }
   /// Derivative ck ∂N/∂d at penetration d [m] with a given ck.
   double slope(double d, double, double ck, double) const { return ck * 1.5 * stiffness() * std::sqrt(d); }
-  /// Stored energy at penetration d [m] [J].
+  /// Stored energy [J] at penetration d [m].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::sqrt;
@@ -164,7 +164,7 @@ struct HuntCrossleyContact {
     double const factor = 1.0 + damping * rate, power = stiffness * std::pow(d, exponent - 1.0);
     return factor > 0.0 ? power * (ck * exponent * factor + cd * damping * d) : 0.0;
   }
-  /// Stored energy at penetration d [m], without damping [J].
+  /// Stored energy ∫₀ᵈ N(x, 0) dx [J] at penetration d [m].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::pow;

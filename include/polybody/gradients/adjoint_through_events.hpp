@@ -8,7 +8,10 @@
 ///   ∂J/∂h = x̄ᵀ ∂x/∂h + t̄.
 /// If the step ends at a breakpoint or at the end of the run, at time T, then dh = dT − dt₀. If the step ends at an
 /// event g = 0, then
-///   dh = −(∂g/∂p dp + ∂g/∂x₀ dx₀)/ġ, with the state x₀ and time at the start, and derivatives of g at fixed h.
+///   dh = −(∂g/∂p dp + ∂g/∂x₀ dx₀ + ∂g/∂t₀ dt₀)/ġ,
+/// with the state x₀ at the start of the step, and derivatives of g at fixed h. Any other step has the requested
+/// length, and dh is the change of this length with the parameters.
+///
 /// The backward sweep over such a step therefore also computes the adjoint variables of g, with ∂g/∂h = ġ. The sweep
 /// adds −(∂J/∂h)/ġ times the adjoint variables and the parameter derivatives of g to those of J. This is the transposed
 /// saltation relation of the discrete run. The adjoint of a restart is computed by differences of the map from the
@@ -30,8 +33,8 @@ namespace polybody::detail {
 template <class V>
 class StartCorrectionAdjoint {
  public:
-  /// \param spare model of the run itself; must outlive this object; \param corrects true if the step has a start
-  /// correction
+  /// \param spare model of the run itself; spare and x must outlive this object; \param corrects true if the step has a
+  /// start correction
   StartCorrectionAdjoint(V& spare, State const& x, double h, bool corrects)
       : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 

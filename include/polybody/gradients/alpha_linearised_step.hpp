@@ -115,9 +115,9 @@ class AlphaLinearisedStep {
     probe_ = CorrectionErrorEstimate(nv, rows);
   }
 
-  /// Sets the step to be differentiated. \param near approximate factorisation of its tangent, for example from the
-  /// solution of the step; may be null. Either `near` or a factorisation at the end of the step is used, according to
-  /// the measured costs. \throws SingularMatrix in a singular configuration.
+  /// Sets the step to be differentiated. \param near approximate factorisation of the tangent of the step, for example
+  /// from the solution of the step; may be null. Either `near` or a factorisation at the end of the step is used,
+  /// according to the measured costs. \throws SingularMatrix in a singular configuration.
   void set(StepEnds const& step, Factors* near = nullptr) {
     probe_.fade();
     factors_.set(step, near);
@@ -137,7 +137,7 @@ class AlphaLinearisedStep {
   /// Replaces derivatives of the state before the step, along up to `max_directions` directions, by derivatives of the
   /// state after the step. An unused lane of the dual numbers may evaluate the probe of the error estimate. Returns the
   /// last correction, or the estimate of the next correction if it is smaller. The correction is relative to the
-  /// derivatives of a and λ, or to a and λ divided by the parameter's scale if these are larger.
+  /// derivatives of a and λ, or to a and λ divided by the parameter's scale if these quotients are larger.
   /// \throws SingularMatrix in a singular configuration.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
     std::size_t const n = directions.size();
@@ -198,8 +198,8 @@ class AlphaLinearisedStep {
     return l < directions.size() ? directions[l] : at_rest_;
   }
 
-  /// Sets y to initial values of the changes of a₁ and λ₁: the changes in the previous step, or if `far` their
-  /// extrapolation.
+  /// Sets y to initial values of the changes of a₁ and λ₁: the changes in the previous step, or their extrapolation if
+  /// `far` is true.
   void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
     AlphaMethod const& m = method_;
     State& dx = *along.dx;

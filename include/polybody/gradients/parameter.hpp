@@ -16,7 +16,7 @@ namespace polybody {
 struct Parameter {
   std::string name;    ///< name with unit
   double value = 0.0;  ///< value at which derivatives are computed, in the unit given in `name`
-  double scale = 0.0;  ///< change that alters results by about their own size, in that unit; if zero, |value|
+  double scale = 0.0;  ///< change that alters results by about their own size, in the unit of `value`; 0: |value|
   /// Names of the bodies, joints and forces that depend on the parameter. If the list is empty, all equations may
   /// depend on the parameter. For example, the length of a rod affects the rod and the joint at its end. Parameters
   /// that affect no common equation are differenced together, with four evaluations of the equations for all of them.
@@ -36,9 +36,10 @@ void check(std::vector<Parameter> const& parameters) {
     Parameter const& p = parameters[i];
     for (std::size_t j = 0; j < i; ++j)
       if (p.name == parameters[j].name)
-        throw InvalidInput("parameter.name", {"Duplicate parameter name \"", ErrorObject{p.name}, "\"."});
+        throw InvalidInput("parameter.name",
+                           {"Duplicate parameter name \"", ErrorObject{p.name}, "\". Use another name."});
     if (p.name.empty())
-      throw InvalidInput("parameter.name", {"Parameter ", ErrorValue{i}, ", counted from 0, has no name."});
+      throw InvalidInput("parameter.name", {"Parameter ", ErrorValue{i}, ", counted from 0, has no name. Set `name`."});
     if (!std::isfinite(p.value) || !std::isfinite(p.scale) || p.scale < 0.0)
       throw InvalidInput("parameter.value",
                          {"Parameter \"", ErrorObject{p.name},

@@ -11,8 +11,8 @@ namespace polybody::detail {
 
 // Stages of a Radau step (integrators/radau.hpp) in any scalar type, for the derivatives of the step.
 
-/// Largest absolute value of the entries of a vector. For dual numbers, each of the derivatives also has a largest
-/// absolute value.
+/// Largest absolute value of the entries of a vector. For dual numbers, the value and each derivative have separate
+/// largest absolute values.
 template <StateScalar T>
 struct LargestParts {
   double value = 0.0;

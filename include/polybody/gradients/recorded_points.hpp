@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Points of a recorded time step at which it solves linear equations K x = b with K = [M, Gᵀ; G, 0]. From
+/// Points at which a recorded time step solves linear equations K x = b with K = [M, Gᵀ; G, 0]. From
 ///   K δx = δb − δK x  follows  b̄ = μ = K⁻ᵀ x̄ = K⁻¹ x̄,
 /// where x̄ and b̄ are the derivatives of the objective function with respect to x and b. One function template
 /// computes the step in doubles and in tape variables. With doubles it solves the equations and factorises K at each

@@ -17,7 +17,7 @@ template <class = void>
   throw InvalidInput(
       "derivative.coincident_times",
       {ErrorObject{who}, ": an event coincides with a breakpoint or with the end of the run at t = ", ErrorTime{t},
-       " s; the run is not differentiable there. Move one of the two times by at least one step."});
+       " s; the run is not differentiable there. Move the breakpoint or the end of the run by at least one step."});
 }
 /// \throws InvalidInput always: the run ends at t [s] at a breakpoint that moves with the parameter `name`.
 template <class = void>
@@ -99,9 +99,9 @@ class RecordedRun {
         computes_(interrupted_ || adaptive),
         driver_(full.scenario.options, report, adaptive) {}
 
-  /// Records the run. \throws InvalidInput if the run has no step, or if an event coincides with a breakpoint, the end
-  /// of the run or another event, if an event value remains zero, or if the run has a breakpoint and breakpoints are
-  /// refused; and the exceptions of `simulate`.
+  /// Records the run. \throws InvalidInput if the run has no step; if an event coincides with a breakpoint, the end of
+  /// the run or another event; if an event value remains zero; if the run has a breakpoint and breakpoints are refused;
+  /// and the exceptions of `simulate`.
   void record() {
     x_ = full_->first();
     driver_.plan_run(x_.t, full_->system.layout().breakpoints);

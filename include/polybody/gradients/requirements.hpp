@@ -50,10 +50,11 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                         "and breakpoints."});
   Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
   if (here && there.reduced->full_velocity != here.reduced->full_velocity)
-    throw InvalidInput("derivative.elimination",
-                       {ErrorObject{who}, ": changing \"", p.name,
-                        "\" changes which coordinates AncfLinear eliminates (a marker crosses the middle between two "
-                        "nodes). Move the marker, or use Constraint for these joints."});
+    throw InvalidInput(
+        "derivative.elimination",
+        {ErrorObject{who}, ": a change of \"", p.name,
+         "\" changes the coordinates that AncfLinear eliminates (a marker crosses the middle between two "
+         "nodes). Move the marker, or use Constraint for these joints."});
 }
 
 /// Returns `left`, the relative change of the derivatives in the last correction of the step to t [s]. \throws

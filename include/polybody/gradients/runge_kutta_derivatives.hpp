@@ -4,10 +4,10 @@
 /// exact and need no iteration. A step is computed in any scalar type T. With the rates δ˙_j and the accelerations v̇_j
 /// of the stages,
 ///   δ_i = h Σ a_ij δ˙_j,  v_i = v₀ + h Σ a_ij v̇_j,  q_i = q₀ ⊞ δ_i.
-/// Each v̇_i, each Gauss–Newton iteration of a projection and its correction of the velocities is a solution of linear
-/// equations. Dual numbers pass through the step for its linearised form (gradients/solved_points.hpp). For its adjoint
-/// a tape records the step, and the backward sweep solves linear equations point by point
-/// (gradients/recorded_points.hpp).
+/// Linear equations are solved for each v̇_i, each Gauss–Newton iteration of a projection, and the correction of the
+/// velocities by the projection. Dual numbers pass through the step for its linearised form
+/// (gradients/solved_points.hpp). For its adjoint a tape records the step, and the backward sweep solves linear
+/// equations point by point (gradients/recorded_points.hpp).
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/projection_derivative.hpp>

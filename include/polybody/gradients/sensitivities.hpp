@@ -7,9 +7,9 @@
 ///     s.derivatives.back()(0, 0);   // derivative of output 0 with respect to parameter 0 at the end of the run
 ///
 /// The results are derivatives of the discrete run, that is of its computed values, not of the exact motion. The
-/// factory makes models for nearby parameter values. A run is never differenced. The differences (FourPoints: relative
-/// errors of 1e-12) are those of the equations at given unknowns, of outputs and event values, and of three maps from
-/// state to state: a start, an event action, and the start correction after a change of the step length. Steps are
+/// factory makes models for nearby parameter values. Runs are not differenced. Differences, with relative errors of
+/// 1e-12 (`FourPoints`), are taken of the equations at given unknowns, of outputs and event values, and of three maps
+/// from state to state: a start, an event action, and the start correction after a change of the step length. Steps are
 /// differentiated exactly (`AlphaLinearisedStep`), also with respect to their lengths, since breakpoints and events end
 /// steps at times that depend on the parameters.
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Points of a time step at which it solves linear equations (gradients/evaluation_point.hpp), and the derivatives of
-/// the solutions. From K x = b with K = [M, Gᵀ; G, 0],
+/// Points at which a time step solves linear equations (gradients/evaluation_point.hpp), and the derivatives of the
+/// solutions. From K x = b with K = [M, Gᵀ; G, 0],
 ///   K δx = δb − δK x.
 /// One pass of dual numbers through the equations at constant x evaluates the right-hand side. One function template
 /// computes the step in doubles and in dual numbers. With doubles it solves the equations and factorises K at each

@@ -91,7 +91,7 @@ class PreconditionerChoice {
 struct EquationDerivative {
   VecX balance;        ///< (nv) ∂r/∂p
   VecX rows;           ///< (rows) ∂Φ/∂p
-  double scale = 1.0;  ///< change of the parameter that may change a and λ by their own size, in its unit
+  double scale = 1.0;  ///< change of the parameter that may change a and λ by their own size [unit of p]
 };
 
 /// Ends of a step of length h: states before and after the step, and the algorithmic accelerations there.
@@ -118,9 +118,9 @@ struct StepDirection {
 };
 
 namespace detail {
-/// Evaluates the system for its tangent matrix with second-order terms. If joints are eliminated, the residual is also
-/// evaluated, because the matrix depends on the reactions of these joints in the last reduced residual. \param r (nv)
-/// workspace
+/// Prepares the system for the evaluation of its tangent with second-order terms. If joints are eliminated, the
+/// residual is also evaluated, because the matrix depends on the reactions of these joints in the last reduced
+/// residual. \param r (nv) workspace
 template <class = void>
 void evaluate_for_tangent(System& system, StepPosition const& x, VecX& r) {
   system.evaluate(x.at.q, x.at.v, x.at.t);

@@ -13,9 +13,9 @@
 namespace polybody::detail {
 
 /// Corresponding times of a run and of the four runs with perturbed parameter values. The start corresponds to the
-/// start, and each breakpoint to the same breakpoint; between them the map is linear. At corresponding times, all runs
-/// evaluate a function of time on the same side of its breakpoint, for any shift of the breakpoint. The differences are
-/// therefore smooth; the effect of the shift of time is subtracted afterwards.
+/// start, and each breakpoint to the same breakpoint. Between two successive of these times, the map is linear. At
+/// corresponding times, all runs evaluate a function of time on the same side of its breakpoint, for any shift of the
+/// breakpoint. The differences are therefore smooth. The effect of the shift of time is subtracted afterwards.
 class TimeMap {
  public:
   /// Start or breakpoint of the run, and the corresponding times of the four perturbed runs.
@@ -25,8 +25,8 @@ class TimeMap {
   };
 
   TimeMap() = default;
-  /// \param remainder_step smallest distance of distinct times [s]; \param who beginning of messages. \throws
-  /// InvalidInput if perturbed times have another order, or if coincident times differ in a perturbed run.
+  /// \param remainder_step times that differ by at most this value coincide [s]; \param who beginning of messages.
+  /// \throws InvalidInput if times change their order in a perturbed run, or if coincident times separate.
   [[gnu::cold]] TimeMap(std::vector<Moving> times, Parameter const& p, double remainder_step, char const* who)
       : times_(std::move(times)), distance_(p.distance()) {
     std::sort(times_.begin(), times_.end(), [](Moving const& a, Moving const& b) { return a.here < b.here; });
@@ -36,15 +36,17 @@ class TimeMap {
         double const interval = b.here - a.here, perturbed_interval = b.there[k] - a.there[k];
         if (interval <= remainder_step &&
             std::abs(perturbed_interval - interval) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
-          throw InvalidInput("derivative.coincident_times",
-                             {ErrorObject{who}, ": two breakpoints, or a breakpoint and the start, coincide at t = ",
-                              ErrorTime{b.here}, " s, but a change of \"", p.name,
-                              "\" separates them; the run is not differentiable there. Move one of the two times by at "
-                              "least one step."});
+          throw InvalidInput(
+              "derivative.coincident_times",
+              {ErrorObject{who}, ": two breakpoints, or the start of the run and a breakpoint, coincide at t = ",
+               ErrorTime{b.here}, " s, but a change of \"", p.name,
+               "\" separates them; the run is not differentiable there. Let both times change equally "
+               "with the parameter, or move one of them by at least one step."});
         if (interval > remainder_step && !(perturbed_interval > 0.0))
           throw InvalidInput("derivative.coincident_times",
-                             {ErrorObject{who}, ": the breakpoints at t = ", ErrorTime{a.here}, " s and ", b.here,
-                              " s change their order within the difference step of \"", p.name,
+                             {ErrorObject{who},
+                              ": two breakpoints, or the start of the run and a breakpoint, at t = ", ErrorTime{a.here},
+                              " s and ", b.here, " s, change their order within the difference step of \"", p.name,
                               "\". Set a smaller `scale` of this parameter."});
       }
     for (Moving const& m : times_)
@@ -67,7 +69,7 @@ class TimeMap {
     if (!last) there = std::min(there, std::nextafter(b.there[k], -std::numeric_limits<double>::infinity()));
     return there;
   }
-  /// Derivative of the corresponding time with respect to the parameter [s over its unit].
+  /// Derivative of the corresponding time with respect to the parameter [s / unit of the parameter].
   double slope(double t) const {
     double sum = 0.0;
     if (moves_)

@@ -7,8 +7,8 @@
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
 /// The Newton unknown is y = Δa₁, with Δq = βh² y, Δv = γh y and Δv̇ = (1 − α_m)/(1 − α_f) y. The constraint equations
 /// are divided by βh², so that the entries of the tangent have the magnitude of M and G for any h. Nonholonomic
-/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh; their rows of the tangent are the same.
-/// First-order states use the formulas of a and v, which are the formulas of the family for ż = h(z, t) [Jansen,
+/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh, so that their rows of the tangent are also rows
+/// of G. First-order states use the formulas of a and v, which are the formulas of the family for ż = h(z, t) [Jansen,
 /// Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ only in the four
 /// coefficients.
 ///
@@ -42,7 +42,7 @@ struct AlphaMethod {
   template <class Solver>
   struct Workspace : AlphaVectors {
     StepTangent<StepSolver<Solver>> tangent;   ///< tangent of a step, with its solver
-    ForwardDynamics<Solver> forward;           ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
+    ForwardDynamics<Solver> forward;           ///< solver of [M, Gᵀ; G, 0]: accelerations at the start, μ
     StepCheck check;                           ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
     double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
@@ -144,7 +144,7 @@ struct AlphaMethod {
     });
   }
   /// Adds the fraction `part` of the correction y: the first entries of y to a, and the others to λ. v̇, v and Δq
-  /// change accordingly.
+  /// change accordingly. \param both_multiplier_sets true if the step has μ besides λ
   void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
     if (part != 1.0) {
       w.y *= part;
@@ -206,7 +206,7 @@ struct AlphaMethod {
     State& x;
     Workspace<Solver>& w;
     double h, look_ahead;  ///< step [s]; fraction of a factorisation's expected use at which its tangent is evaluated
-    bool both_multiplier_sets, recomputes_held, surrogate_friction;
+    bool both_multiplier_sets, recomputes_held, surrogate_friction;  ///< the first is true if the step has μ besides λ
     Index bad = -1;
 
     StepPosition place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
@@ -353,11 +353,11 @@ struct AlphaMethod {
   }
 
   /// Corrects v₀ and a₀ for a change of the step from h_old to h_new. The a and v of the method differ from those of
-  /// the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12). Here Δ = α_m − α_f, C = 1/6 − β − Δ/2, and P projects onto the
-  /// directions of the constraint forces. A start applies these differences, and a change of h updates them. The local
-  /// error of a step is h³ (C v̈ + [v, v̇]/12), because q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)); the
-  /// constraint equations compensate it. [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls &
-  /// Cardona 2015]
+  /// the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12). Here Δ = α_m − α_f, C = 1/6 − β − Δ/2, and P projects onto
+  /// the directions of the constraint forces. A start applies these differences, and a change of h updates them. The
+  /// local error of a step is h³ (C v̈ + [v, v̇]/12), because q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12));
+  /// the constraint equations compensate this error. [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in
+  /// Arnold, Brüls & Cardona 2015]
   template <class Solver>
   void correct(System& system, State const& x, double h_old, double h_new, Workspace<Solver>& w) const {
     double const delta = alpha_m - alpha_f, c = 1.0 / 6.0 - beta - 0.5 * delta;

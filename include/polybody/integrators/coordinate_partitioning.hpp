@@ -21,7 +21,7 @@ namespace polybody {
 /// leaves more than a quarter of the violation, G_d is factorised again and the partition is checked.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
-  double tolerance = 1e-12;     ///< tolerance of Φ, in addition to the round-off of q
+  double tolerance = 1e-12;     ///< tolerance of Φ [m], [rad], in addition to the round-off of q
   int max_iterations = 10;      ///< limit of Newton iterations for the positions
   double largest_ratio = 10.0;  ///< largest rate of a dependent coordinate relative to that of an independent one
   int dense_up_to = 60;         ///< number of velocities up to which G is dense
@@ -215,8 +215,8 @@ struct CoordinatePartitioning {
     SparsePartitionOf<>& partition;
     System& system;
     Scratch& s;
-    double limit;                                             ///< largest permitted |R| [1]
-    double before = std::numeric_limits<double>::infinity();  ///< violation before the last correction, in its unit
+    double limit;                                             ///< largest permitted entry of |G_d⁻¹ G_i| [1]
+    double before = std::numeric_limits<double>::infinity();  ///< largest |Φ| or |Φ̇| before the last correction
     int renewals = 0;
 
     template <class = void>

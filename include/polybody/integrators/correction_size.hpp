@@ -12,7 +12,7 @@ namespace polybody::detail {
 
 /// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms. The
 /// size of a correction is also a root mean square. A single large coordinate, for example an angle after many
-/// revolutions, therefore enters both in the same way.
+/// revolutions, therefore enters the round-off and the correction in the same way.
 inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }

@@ -38,11 +38,11 @@ struct ConservingStep {
     StepSecants secants;                          ///< mean forces and constraint Jacobian of the step
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
     TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< solver of the exact tangent
-    ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations at the start
-    StepCheck check;                                             ///< checks of the steps of a run
-    ReusedFactorisation reused_factorisation;                    ///< state of the reused factorisation of the tangent
-    bool has_exact = false;                                      ///< true if `exact` is analysed
-    double h_factored = 0.0;  ///< step length of the last factorisation of the tangent [s]
+    ForwardDynamics<Solver> forward;           ///< solver of [M, Gᵀ; G, 0]: accelerations at the start
+    StepCheck check;                           ///< checks of the steps of a run
+    ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
+    bool has_exact = false;                    ///< true if `exact` is analysed
+    double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
 
     /// Allocates all members except `exact`.
     explicit Workspace(System& s)

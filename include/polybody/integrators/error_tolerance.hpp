@@ -161,7 +161,8 @@ struct ErrorTolerance {
   double of(double scale, double largest) const {
     return absolute + relative * scale + 4.0 * std::numeric_limits<double>::epsilon() * largest;
   }
-  /// Tolerated error of one first-order state, relative to its own magnitude: such states have different units.
+  /// Tolerated error of one first-order state, relative to its own magnitude, because first-order states have different
+  /// units.
   double of_one(double before, double after) const {
     return absolute + relative * std::max(std::abs(before), std::abs(after));
   }
@@ -184,7 +185,7 @@ struct ErrorTolerance {
 ///               velocity over the step;
 ///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group, or the extent of the
 ///               velocities of the assembly over its extent;
-///   others:     the largest entries of the group: gradients, deformations, slides, coordinates of unknown unit.
+///   others:     the largest entries of the group: gradients, deformations, sliders, coordinates of unknown unit.
 /// An assembly consists of bodies that joints and forces connect; markers on the ground are points of the assembly, at
 /// rest. Bodies without mutual forces therefore do not affect each other's scales. A common velocity, a common
 /// translation and full revolutions do not change the scales. If an assembly has a single point, the world's origin is

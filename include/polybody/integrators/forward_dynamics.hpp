@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Accelerations and multipliers of a state, and projections onto the constraint equations, by the matrix [M, Gᵀ; G, 0]
-/// [thesis Eq. 3.2].
+/// Accelerations and multipliers of a state, and projections onto the constraint equations. The matrix of all
+/// linear equations is [M, Gᵀ; G, 0] [thesis Eq. 3.2].
 
 #include <algorithm>
 #include <memory>

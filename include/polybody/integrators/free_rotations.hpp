@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// Free rotations of rigid bodies in explicit steps. Half steps of Ω by v̇ do not conserve the energy of a rotation: Ω˙
-/// contains the product J⁻¹(Ω × J Ω), with the inertia tensor J. The methods of this file integrate this product
-/// separately. Forces change Ω by h J⁻¹ m. Between these changes a body rotates freely,
+/// Free rotations of rigid bodies in explicit steps. Half steps of the angular velocity Ω (body axes) by v̇ do not
+/// conserve the energy of a rotation: Ω˙ contains the product J⁻¹(Ω × J Ω), with the inertia tensor J. The methods of
+/// this file integrate this product separately. Forces change Ω by h J⁻¹ m. Between these changes a body rotates
+/// freely,
 ///   q₁ = q₀ ⊞ θ,   Π₁ = exp(−θ̃) Π₀,   θ = ½h J⁻¹(Π₀ + Π₁),   Π = J Ω in body axes [Simo & Wong 1991].
-/// |Π|, the momentum in world axes and the energy ½ ΩᵀJΩ are conserved, because (Π₁ − Π₀)·θ = 0. A rotation about a
-/// principal axis is exact. The step is of order two and reversible in time.
+/// |Π|, the angular momentum in world axes and the energy ½ ΩᵀJΩ are conserved, because (Π₁ − Π₀)·θ = 0. A rotation
+/// about a principal axis is exact. The step is of order two and reversible in time.
 
 #include <cmath>
 #include <limits>

@@ -12,7 +12,8 @@ struct HhtAlpha {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double alpha = -0.1;              ///< α in [−1/3, 0]: −1/3 damps most, 0: trapezoidal rule; α < 0 with constraints
+  /// α in [−1/3, 0]: −1/3 damps most, and 0 is the trapezoidal rule. With constraint equations, use α < 0.
+  double alpha = -0.1;
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h

@@ -92,7 +92,7 @@ template <class = void>
       "newton.not_converged",
       {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t}, " s after ",
        report.iterations, " iterations (contraction rate ", report.theta, "). Take a smaller step",
-       remedy_of_friction(system), remedy_of_stretch(system), "; the state is unchanged."});
+       remedy_of_friction(system), remedy_of_stretch(system), ". The state is unchanged."});
 }
 
 }  // namespace polybody::detail

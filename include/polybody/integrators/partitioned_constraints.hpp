@@ -4,7 +4,7 @@
 
 namespace polybody {
 
-/// Constraint equations G b = r (m×n) of rank k, with a partition into k dependent columns and the independent ones,
+/// Constraint equations G b = r (m×n) of rank k, with a partition into k dependent and n − k independent columns,
 ///   b_d = G_d⁻¹ r − R b_i,   R = G_d⁻¹ G_i,
 /// by Gauss–Jordan elimination. Full pivoting selects the partition; redundant equations remain to the end and are
 /// ignored [Wehage & Haug 1982; Shabana 2020]. A partition is kept while no entry of R exceeds a limit: |R_di| is the
@@ -38,14 +38,14 @@ class PartitionedConstraints {
     for (Index i = 0; i < b.rows; ++i)
       for (Index j = 0; j < b.cols; ++j) at(row - columns_ + i, col + j) += b(i, j);
   }
-  /// Excludes a row, by setting its entries to zero.
+  /// Excludes a row until the next `begin`, by setting its entries to zero.
   void mark_redundant(Index row) { std::fill_n(&at(row, 0), width_, 0.0); }
   /// Entry `row` of right-hand side number `side`.
   double& right(int side, Index row) { return at(row, columns_ + side); }
 
   /// Solves for b_d with b_i = 0 in the present partition. Returns false if no partition is selected, or if the rank or
-  /// an entry of R does not permit the present one. All entries must then be added again before `choose`. \param limit
-  /// largest permitted |R|
+  /// an entry of R does not permit the present partition. All entries must then be added again before `choose`. \param
+  /// limit largest permitted |R|
   bool reduce(double limit) {
     if (rank_ == none) return false;
     for (Column& c : state_)

@@ -4,9 +4,9 @@
 /// §IV.5, §IV.8]:
 ///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
 ///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j).
-/// The third stage is the end of the step. The constraint equations are satisfied as accelerations, so that multipliers
-/// have the order of the velocities; `Projection` removes the drift. The Newton unknowns are v̇_i and λ_i of all stages
-/// together; δ_i follow from them. First-order states are part of v_i.
+/// The third stage is the end of the step. The stages satisfy the second derivatives of the constraint equations, so
+/// that multipliers have the order of the velocities. `Projection` removes the drift. The Newton unknowns are v̇_i and
+/// λ_i of all stages together. The increments δ_i follow from v̇_i. First-order states are part of v_i.
 
 #include <array>
 #include <utility>
@@ -86,13 +86,13 @@ struct Radau {
     VecX q, r, phi, gamma, next, rhs, y, kept;  ///< in order: q, r, G v̇, γ, δ, −(r, Φ̈) of all stages, two corrections
     TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is analysed by the first step that requires it
     ConstraintDerivatives slopes;               ///< ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint equations
-    ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations at the start, projections
+    ForwardDynamics<Solver> forward;            ///< solver of [M, Gᵀ; G, 0]: accelerations at the start, projections
     StepCheck check;                            ///< checks of the steps of a run
     Projection::Scratch projected;              ///< memory of `projection`: none
     ReusedFactorisation reused_factorisation;   ///< state of the reused factorisation
     bool has_by_stage = false;                  ///< true if `by_stage` is analysed
     double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0 if none
-    double unsettled = 0.0;                     ///< largest norm of the last correction of a δ_i, in its unit
+    double unsettled = 0.0;                     ///< largest norm of the last correction of a δ_i [m], [rad]
     Sequence<double> slack;  ///< by stages and constraint equations: −1 on the diagonal of a redundant equation keeps
                              ///< its multiplier unchanged
 
@@ -156,7 +156,7 @@ struct Radau {
       }
     }
     /// Computes δ_i = h Σ a_ij δ˙(δ_j, v_j) by two fixed-point iterations from the last δ. The rate δ˙ depends little
-    /// on δ, and not at all without rotations.
+    /// on δ, and without rotations it does not depend on δ.
     void set_positions(System& s, double h) {
       for (int pass = 0; pass < 2; ++pass) {
         unsettled = 0.0;

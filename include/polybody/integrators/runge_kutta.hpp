@@ -120,8 +120,8 @@ struct RungeKutta4 {
   static constexpr double stability_limit = 2.8284271247461901;  ///< largest stable ωh [1]
   using Tableau = detail::ClassicalTableau;                      ///< coefficients of the method
   using Derivatives = RungeKuttaDerivatives;                     ///< linearised step and adjoint of a step
-  /// Largest h with |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1 for z = hs. The number s is the faster of the roots −d/2 ± √(d²/4
-  /// − ω²), with d = `rate` [1/s] and ω = `omega` [rad/s] [Hairer & Wanner 1996, §IV.2].
+  /// Largest h with |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1 for z = hs. The number s is the root of larger magnitude of −d/2
+  /// ± √(d²/4 − ω²), with d = `rate` [1/s] and ω = `omega` [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
     double const under = omega * omega - 0.25 * rate * rate;
     std::complex<double> const s =

@@ -74,8 +74,8 @@ class SparsePartitionOf {
 
  private:
   using Qr = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
-  /// Pivot thresholds relative to the largest entry: a column with a smaller pivot than `redundant_below` is dependent,
-  /// and `adds_enough` is the first threshold of the selection.
+  /// Pivot thresholds relative to the largest entry. A column with a pivot below `redundant_below` is a linear
+  /// combination of others. `adds_enough` is the first threshold of the selection.
   static constexpr T redundant_below = 1e-9, adds_enough = 0.1;
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 

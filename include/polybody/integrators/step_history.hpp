@@ -78,7 +78,7 @@ class StepHistory {
     return x.history[x.history.size() - 2] > 0.0;
   }
 
-  // Derivatives of `push` and of `jerk`. A converged step depends on the earlier points by `jerk` only.
+  // Derivatives of `push` and of `jerk`. A converged step depends on the earlier points only through `jerk`.
 
   /// Range of indices in the history.
   struct Range {

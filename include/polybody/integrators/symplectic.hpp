@@ -60,7 +60,7 @@ struct Rattle {
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   double tolerance = 1e-12;  ///< tolerance of Φ, relative to 1 + max |q|
-  int max_iterations = 50;   ///< limit of iterations; each multiplies Φ by about hω
+  int max_iterations = 50;   ///< limit of iterations; each multiplies Φ by about ωh, with the angular frequency ω
 
   /// Memory of a step, allocated once.
   template <class Solver>

@@ -12,7 +12,7 @@ namespace polybody::detail {
 enum class UnknownKind : unsigned char {
   length,    ///< component of a position in the world
   rotation,  ///< an angle, or an entry of a unit quaternion
-  other      ///< any other: gradients, deformations, slides, coordinates of unknown unit
+  other      ///< any other: gradients, deformations, sliders, coordinates of unknown unit
 };
 
 /// Description of an unknown: its body, its kind, and the world axis of a position component; −1 for other kinds.
@@ -28,9 +28,9 @@ struct UnknownPlaces {
 };
 
 /// Classifies the unknowns of a body by their units. Four coordinates without a unit are a quaternion if three
-/// velocities in rad/s belong to them. Lengths are a position if there is one for each world axis, and if they are the
-/// first coordinates or other coordinates follow. Lengths at the end of a body, after other coordinates, are positions
-/// of sliders.
+/// velocities in rad/s belong to them. Consecutive lengths, one for each world axis, are a position if they are the
+/// first coordinates or if other coordinates follow. Lengths at the end of a body, after other coordinates, are
+/// positions of sliders.
 template <class = void>
 [[gnu::cold]] void classify(BodyLayout const& body, Index velocities, UnknownPlace* of_q, UnknownPlace* of_v) {
   if (!body.units.of_coordinate) return;

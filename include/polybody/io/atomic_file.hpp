@@ -18,10 +18,11 @@ namespace polybody {
 
 /// Output file that is written to a temporary file in the same folder and renamed on `close()`. A reader finds the old
 /// file or the complete new file, even after a loss of power (fsync). The new file gets the permissions of the file
-/// that it replaces. On Linux a killed program leaves no temporary file. If the file system has no unnamed files
-/// (O_TMPFILE), a killed program leaves ".polybody-<16 hex digits>.tmp", which may be removed. The destructor closes
-/// and renames an open file. If a write has failed, or if an exception is in flight and `keep_on_exception()` was not
-/// called, the destructor removes the temporary file instead. An existing file then remains unchanged. Move-only.
+/// that it replaces. A killed program leaves no temporary file if the system supports unnamed files (O_TMPFILE of
+/// Linux). Otherwise a killed program leaves ".polybody-<16 hex digits>.tmp", which can be deleted. The destructor
+/// closes and renames an open file. If a write has failed, or if an exception is in flight and `keep_on_exception()`
+/// was not called, the destructor removes the temporary file instead. An existing file then remains unchanged.
+/// Move-only.
 class AtomicFile {
  public:
   /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, even if its target
@@ -80,7 +81,7 @@ class AtomicFile {
   void write(std::string_view bytes) {
     if (!is_open())
       throw InvalidInput("file.closed",
-                         {"file \"", ErrorObject{name_}, "\" is already closed, so nothing can be added."});
+                         {"file \"", ErrorObject{name_}, "\" is already closed, so nothing can be written to it."});
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.stream()) == bytes.size()) return;
     failed_ = true;
@@ -90,8 +91,9 @@ class AtomicFile {
   /// Keeps an incomplete file after an exception: the bytes written so far then appear under the final name.
   void keep_on_exception() noexcept { kept_ = true; }
 
-  /// Flushes the file and renames it to its final name. A second call has no effect. Throws IoError with the file
-  /// name and the system's reason, also if an earlier write failed. The temporary file is then removed.
+  /// Flushes the file and renames it to its final name. A second call has no effect. Throws IoError with the file name
+  /// and, if known, the system's reason if this fails or an earlier write has failed. Before `close` throws, it removes
+  /// the temporary file.
   void close() {
     if (!is_open()) return;
     errno = 0;

@@ -178,8 +178,9 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
     throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated within its first ",
                                          sizeof head, " bytes. Write it again."});
   if (head.order == 0x04030201u)
-    throw IoError("checkpoint.format", {"checkpoint \"", ErrorObject{name},
-                                        "\" was written on a machine with another byte order. Read it there."});
+    throw IoError("checkpoint.format",
+                  {"checkpoint \"", ErrorObject{name},
+                   "\" was written on a machine with another byte order. Read it on a machine with that order."});
   if (head.version != ours.version)
     throw IoError("checkpoint.format",
                   {"checkpoint \"", ErrorObject{name}, "\" is of version ", ErrorValue{head.version},

@@ -69,7 +69,8 @@ double own_span(Comparison const& c, std::size_t i) {
 }
 
 /// Reference span for differences of output i: the greater of its `own_span` and 1 % of the largest `own_span` of
-/// outputs with the same unit. The second value applies if output i of the first run is only round-off.
+/// outputs with the same unit. The second value prevents large relative differences of an output that is only
+/// round-off.
 template <class = void>
 double measure_of(Comparison const& c, std::size_t i) {
   std::vector<std::string> const& names = c.runs.front().output_names;
@@ -118,7 +119,8 @@ double mean_square(Curve const& curve) {
 }
 
 /// Converts the curves of a figure to magnitudes on a logarithmic axis, and removes curves whose values are all zero.
-/// `least` is the largest magnitude of the smallest curve. Magnitudes below 1e-3 `least` are drawn at this limit.
+/// `least` is the largest magnitude of the curve with the smallest values. Magnitudes below 1e-3·`least` are drawn at
+/// 1e-3·`least`.
 template <class = void>
 void show_amounts(Figure& figure, double least) {
   figure.log_y = true;
@@ -185,8 +187,8 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
                                                  .colour = 0});
 }
 
-/// Figure of the largest difference of each run from the first run, over the computing time of the run. The list is
-/// empty if no run differs.
+/// Figure of the largest relative difference of each run from the first run, over the CPU time of the run. Returns no
+/// figure if no run differs.
 template <class = void>
 std::vector<Figure> cost_figure(Comparison const& c) {
   ComparedRun const& first = c.runs.front();

@@ -35,9 +35,10 @@ void check(Comparison const& c, std::string const& what) {
                 run.output_names == c.runs.front().output_names;
     for (auto const& history : run.outputs) full = full && history.size() == n;
     if (!full)
-      throw InvalidInput("comparison.runs", {ErrorObject{what}, ": the run \"", run.name,
-                                             "\" lacks times, or the sizes of its histories and outputs differ from "
-                                             "its times and from the first run's outputs. Use the runs of `compare`."});
+      throw InvalidInput("comparison.runs",
+                         {ErrorObject{what}, ": the run \"", run.name,
+                          "\" has no times, a history whose length differs from the number of times, "
+                          "or other outputs than the first run. Use the runs that `compare` returns."});
   }
 }
 
@@ -57,8 +58,8 @@ std::string word_for_file(std::string const& name) {
   return word;
 }
 
-/// Draws each figure as a panel, in `columns` columns and with six panels per picture (`stem`, `stem`_2, …). Adds the
-/// names of the files to `written`.
+/// Writes each figure as a panel, in `columns` columns and with at most six panels per picture (`stem`, `stem`_2, …).
+/// Gnuplot draws the pictures if `draw` is true. Adds the names of the files to `written`.
 template <class = void>
 void draw_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem, bool draw,
                  std::vector<std::filesystem::path>& written) {
@@ -126,15 +127,15 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
 }
 
 /// Draws the histories of all runs as figures in `folder`:
-///   `outputs`      each output and its difference from the first run, largest relative difference first
+///   `outputs`      each output and its difference from the first run, in descending order of the relative difference
 ///   `violations`   constraint violations of positions, velocities and accelerations
 ///   `joint_force`  force of the joint with the largest peak force
 ///   `energies`     kinetic and potential energy, and change of the total energy since the start
-///   `cost`         largest difference of each run from the first run, over the computing time
+///   `cost`         largest relative difference of each run from the first run, over the CPU time
 ///
-/// A page has six panels; further pages are `outputs_2`, …. Each figure consists of .dat and .gp, and of .png if
-/// gnuplot is found and `draw` is true. A figure without data is not written. Returns the files. Throws InvalidInput
-/// for a comparison without runs; IoError if a file cannot be written or gnuplot fails.
+/// A page has at most six panels; further pages are `outputs_2`, …. Each page consists of the files .dat and .gp, and
+/// .png if gnuplot is found and `draw` is true. A figure without data is not written. Returns the files. Throws
+/// InvalidInput for a comparison without runs; IoError if a file cannot be written or gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& all, std::filesystem::path const& folder,
                                                  bool draw = true) {
@@ -166,7 +167,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
 }
 
 /// Writes table.csv and the files of `write_histories` and `write_figures` for a comparison to `folder`. Gnuplot draws
-/// the figures if `draw` is true. Returns the files.
+/// the figures if `draw` is true. Returns the files. Throws like `write_csv`, `write_histories` and `write_figures`.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& all, std::filesystem::path const& folder,
                                                 bool draw = true) {
@@ -190,12 +191,12 @@ void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
 }
 
 /// Figure of the error over CPU time for the completed runs, with logarithmic axes. Throws InvalidInput if there are no
-/// curves, or if they are for different outputs.
+/// curves, or if the curves show different outputs.
 template <class = void>
 Figure work_precision_figure(WorkPrecision const& w) {
   if (w.curves.empty())
     throw InvalidInput("figure.content", {ErrorObject{"work_precision_figure"},
-                                          ": there are no curves. Add the curves of `work_precision`."});
+                                          ": there are no curves. Add the curves that `work_precision` returns."});
   Figure figure{.title = "Work and precision",
                 .x_label = "CPU time [s]",
                 .y_label = "error of " + w.curves.front().output,
@@ -203,9 +204,9 @@ Figure work_precision_figure(WorkPrecision const& w) {
                 .log_y = true};
   for (WorkCurve const& curve : w.curves) {
     if (curve.output != w.curves.front().output)
-      throw InvalidInput("figure.content",
-                         {ErrorObject{"work_precision_figure"}, ": \"", curve.name, "\" is for the output \"",
-                          curve.output, "\", not \"", w.curves.front().output, "\". Draw it in another figure."});
+      throw InvalidInput("figure.content", {ErrorObject{"work_precision_figure"}, ": the curve \"", curve.name,
+                                            "\" shows the output \"", curve.output, "\", not \"",
+                                            w.curves.front().output, "\". Draw this curve in another figure."});
     Curve drawn{.label = curve.name, .style = "linespoints", .colour = int(&curve - w.curves.data())};
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) {
@@ -218,8 +219,8 @@ Figure work_precision_figure(WorkPrecision const& w) {
 }
 
 /// Writes the points and their figure to `folder`: work_precision.csv, .dat and .gp, and .png if gnuplot is found and
-/// `draw` is set. Returns the files. Throws InvalidInput if no run is complete; IoError if a file cannot be written or
-/// gnuplot fails.
+/// `draw` is true. Returns the files. Throws InvalidInput if no run is complete, or if the curves show different
+/// outputs; IoError if a file cannot be written or gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_report(WorkPrecision const& w, std::filesystem::path const& folder,
                                                 bool draw = true) {

@@ -27,7 +27,8 @@ namespace polybody {
 /// the rows written so far, if there are any (see `Keeps`). Move-only.
 class Csv {
  public:
-  /// Result if an exception interrupts the writing. `rows`: a file with the rows written so far. `full_table`: no file.
+  /// Result if an exception interrupts the writing. `rows`: a file with the rows written so far, if there are any.
+  /// `full_table`: no file.
   enum class Keeps { rows, full_table };
 
   /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").

@@ -68,7 +68,7 @@ void check(Figure const& figure) {
   for (auto const& [x, y, label, style, colour, width] : figure.curves) {
     (where = title).append(", curve \"").append(label).append("\"");
     need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " + std::to_string(y.size()) +
-                                   "; the numbers must be equal");
+                                   "; x and y must have the same length");
     need(!x.empty(), "a curve needs at least one point");
     need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
@@ -80,7 +80,7 @@ void check(Figure const& figure) {
       visible = (!figure.log_x || x[i] > 0) && (!figure.log_y || y[i] > 0);
   }
   where = title;
-  need(visible, "no point is positive, so nothing can be drawn on logarithmic axes");
+  need(visible, "no point is positive on all logarithmic axes, so nothing can be drawn");
 }
 
 }  // namespace detail

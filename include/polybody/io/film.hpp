@@ -44,7 +44,7 @@ std::string json_list(List const& list, Item const& item) {
   return text + ']';
 }
 
-/// Range of a scalar over all parts that have it. Quantises the values within the range.
+/// Range of a scalar over all parts with values of this scalar. Quantises values within the range.
 struct ScalarRange {
   float low = std::numeric_limits<float>::infinity(), high = -low;
 
@@ -170,7 +170,7 @@ namespace polybody {
 /// Position of the grid of a scene: below the scene, behind the scene, or no grid.
 enum class FilmFloor { ground, behind, none };
 
-/// Options of a film: title, viewer, frame rate and camera.
+/// Options of a film: viewer, title, frame rate, camera and grid.
 struct FilmOptions {
   /// HTML page of the viewer, `polybody_viewer.html`. CMake's target `viewer` builds it in the build folder and
   /// installs it in share/polybody/viewer.
@@ -226,13 +226,13 @@ std::string html_text(std::string const& text) {
 ///     if (scene.due(now.t)) scene.record(visual, now);
 ///   film.write("out/arm.html");
 /// In each frame, a part with constant shape needs 20 bytes. A deformable part needs 3 or 6 more bytes for each point,
-/// and a colour scalar 2 bytes for each point. The base 64 text in the file is longer by a third.
+/// and a colour scalar 2 bytes for each point. In the file, these bytes are base 64 text, which is longer by a third.
 class Film {
  public:
   /// Empty film. Checks the options and reads the viewer.
   /// \throws InvalidInput for a frame rate that is not positive, and for view directions that are parallel or not
   /// finite.
-  /// \throws IoError if the viewer does not exist.
+  /// \throws IoError if the viewer does not exist or is not a viewer of polybody.
   explicit Film(FilmOptions options) : options_(std::move(options)) {
     require_positive(options_.frames_per_second, "Film: the frames per second");
     if (options_.look_from || options_.up) require_view(view(false));
@@ -252,8 +252,8 @@ class Film {
 
   /// Writes the film to `file`, which appears when it is complete.
   /// \return size of the file [bytes]
-  /// \throws InvalidInput if the film has no scene, a scene has no frames, or a scene has no part with the name
-  /// `follow`.
+  /// \throws InvalidInput if the film has no scene, if a scene has no frames or no part with the name `follow`, or if
+  /// the view directions are parallel.
   /// \throws IoError if the file cannot be written.
   std::size_t write(std::filesystem::path const& file) const {
     if (scenes_.empty())
@@ -278,13 +278,13 @@ class Film {
  private:
   void require_complete(FilmScene const& scene) const {
     if (scene.times().empty())
-      throw InvalidInput("film.scene",
-                         {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no frame. Record at least one."});
+      throw InvalidInput("film.scene", {"Film: the scene \"", ErrorObject{scene.name()},
+                                        "\" has no frame. Record at least one frame."});
     bool found = options_.follow.empty();
     for (detail::FilmPart const& part : scene.parts()) found = found || part.name == options_.follow;
     if (!found)
       throw InvalidInput("film.scene", {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no part \"",
-                                        options_.follow, "\" to follow."});
+                                        options_.follow, "\". Set FilmOptions::follow to the name of a part."});
   }
 
   bool planar() const { return std::ranges::all_of(scenes_, &FilmScene::planar); }

@@ -10,7 +10,7 @@ namespace polybody {
 /// Adds an arrow for each joint to the last frame of a scene: the force on the joint's second body, at the second
 /// marker.
 /// \param unit size of the arrows' unit of force [N]: 1000 for arrows in kN
-/// \throws InvalidInput, NonFiniteValue like `FilmScene::arrow`.
+/// \throws InvalidInput and NonFiniteValue like `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, ObservedState const& now, double unit = 1.0) {
   System const& system = now.evaluated();

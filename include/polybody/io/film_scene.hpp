@@ -123,7 +123,7 @@ class FilmScene {
   bool due(double t) const { return times_.empty() || t >= next_ - 1e-9; }
 
   /// Records a frame of `parts` at time t [s].
-  /// \throws InvalidInput unless times increase and the parts are the same as in the first frame
+  /// \throws InvalidInput unless times increase and the parts are the same as in the first frame.
   /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
     if (!std::isfinite(t))
@@ -133,7 +133,8 @@ class FilmScene {
       throw InvalidInput("film.time_order", {ErrorObject{who()}, "the times of the frames must increase, but t = ",
                                              ErrorTime{t}, " s follows ", times_.back(), " s."});
     if (parts.empty())
-      throw InvalidInput("film.scene", {ErrorObject{who()}, "there is nothing to draw. Attach shapes to the visual."});
+      throw InvalidInput("film.scene",
+                         {ErrorObject{who()}, "the frame has no parts. Add shapes to the Visual by attach or sweep."});
     check_parts(t, parts);
     if (times_.empty()) {
       for (VisualPart const& part : parts) add_part(part);
@@ -157,7 +158,8 @@ class FilmScene {
   /// Adds an arrow to the last frame.
   /// \param place start of the arrow, world axes [m]
   /// \param vector the arrow, world axes [unit of the set]
-  /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue.
+  /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue if `place` or
+  /// `vector` is not finite.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
       throw InvalidInput("film.arrow", {ErrorObject{who()},
@@ -173,7 +175,7 @@ class FilmScene {
 
   /// Adds a point to the history `label`: a `value` in `unit` at time t [s]. Histories of several scenes with the same
   /// label share a plot.
-  /// \throws InvalidInput unless the times of the history increase; NonFiniteValue.
+  /// \throws InvalidInput unless the times of the history increase; NonFiniteValue if t or `value` is not finite.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
       throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "a point of the history \"", label,

@@ -136,7 +136,7 @@ inline std::string mode_title(ModePictureOptions const& options, std::size_t k) 
   return k < options.titles.size() ? options.titles[k] : "mode " + std::to_string(k + 1);
 }
 
-/// Sets the axis ranges of a figure with equal axes to the aspect ratio of its panel, so that the axis labels have
+/// Sets the axis ranges of a figure with equal axes to the aspect ratio 1.5 of its panel, so that the axis labels have
 /// space.
 template <class = void>
 void fill_panel(Figure& figure) {
@@ -203,8 +203,8 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
                        ModePictureOptions const& options = {}) {
   detail::require_picture<>(options);
   if (shapes.cols() == 0)
-    throw InvalidInput("mode.number",
-                       {ErrorObject{"mode pictures"}, ": the shapes have no mode: their matrix has no column."});
+    throw InvalidInput("mode.number", {ErrorObject{"mode pictures"},
+                                       ": the matrix of shapes has no columns. Compute at least one mode."});
   std::vector<Figure> panels;
   for (Index k = 0; k < shapes.cols(); ++k)
     panels.push_back(detail::mode_figure<>(detail::ModeShape(visual, x, shapes.col(k), options.size), options,
@@ -212,10 +212,11 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
   return write_panels(panels, options.columns, stem, options.draw);
 }
 
-/// Records one period of a mode (column `mode` of `shapes`) as frames of a film. The period is 2 s for every frequency:
+/// Records one period of a mode, column `mode` of `shapes`, as frames of a film:
 ///   record_mode(film.scene("mode 1"), visual, x, found.shape, 0);
-/// The displacements are those of `write_modes` with this `size`, times sin(πt). \throws InvalidInput like
-/// `write_modes`, and for a column that does not exist.
+/// The period is 2 s for every frequency. The displacements at time t [s] are those of `write_modes` with this `size`,
+/// times sin(πt).
+/// \throws InvalidInput like `write_modes`, and for a column that does not exist.
 template <class = void>
 void record_mode(FilmScene& scene, Visual& visual, State const& x, MatX const& shapes, Index mode, double size = 0.1) {
   detail::require_picture<>({.size = size});

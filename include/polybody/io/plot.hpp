@@ -70,8 +70,8 @@ std::string gnuplot_text(std::string_view text) {
 }
 
 /// Runs gnuplot, the file `program`, on `script` in the folder of the script. The gnuplot variable png contains the
-/// name of a temporary file, to which the script draws. This file then replaces the file `png`. Throws IoError with the
-/// script's name and gnuplot's message if gnuplot fails, and IoError if the picture cannot be renamed.
+/// name of a temporary file, to which the script draws. The temporary file then replaces the file `png`. Throws IoError
+/// with the script's name and gnuplot's message if gnuplot fails, and IoError if the picture cannot be renamed.
 template <class = void>
 void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
                  std::filesystem::path const& png) {
@@ -195,8 +195,8 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 
 /// Draws several figures in one PNG, row by row in `columns` columns. Each panel has the size of the largest figure.
 /// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` is true and gnuplot is on PATH, .png.
-/// Each file appears when it is complete. Throws InvalidInput naming the figure and the curve, before a file is
-/// written; IoError if writing or gnuplot fails.
+/// Each file appears when it is complete. Throws InvalidInput with the names of the figure and the curve, before it
+/// writes a file; IoError if writing or gnuplot fails.
 template <class = void>
 DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
                         bool draw = true) {
@@ -218,7 +218,7 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
   int const across = std::min(columns, count), down = (count + across - 1) / across;
   if (across > 30000 / width || down > 30000 / height)
     throw InvalidInput("figure.size", {"figure file \"", ErrorObject{stem.string()},
-                                       "\": the picture is larger than 30000 pixels. Use fewer panels."});
+                                       "\": the picture is wider or higher than 30000 pixels. Use fewer panels."});
 
   std::string const size = std::to_string(across * width) + ',' + std::to_string(down * height);
   std::string script = "# gnuplot script; run it from its own folder\n";

@@ -40,7 +40,7 @@ inline bool stderr_is_terminal() {
 /// Nothing is drawn if stderr is not a terminal. Not thread-safe.
 class Progress {
  public:
-  using Clock = std::function<double()>;  ///< Time [s] from any origin; it never decreases.
+  using Clock = std::function<double()>;  ///< returns a time [s] from any origin that never decreases
 
   /// Progress bar with this `label` from `start` to `end`, in the unit of the argument of `update`, such as simulated
   /// time [s]. `start` may be greater than `end`. Throws InvalidInput if `start` or `end` is not finite.
@@ -114,7 +114,7 @@ class Progress {
 
   static std::string shortened(std::string text) {
     std::ranges::replace_if(text, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-    while (width(text) > label_width) text.pop_back();  // removes a UTF-8 character up to its first byte
+    while (width(text) > label_width) text.pop_back();  // removes the last UTF-8 character byte by byte
     return text;
   }
 

@@ -36,8 +36,9 @@ void check(std::vector<TableColumn> const& columns) {
   }
   std::ranges::sort(names);
   if (auto const twice = std::ranges::adjacent_find(names); twice != names.end())
-    throw InvalidInput("table.columns", {ErrorObject{"tabulate"}, ": duplicate column \"", *twice,
-                                         "\". The first column is \"t [s]\"."});
+    throw InvalidInput("table.columns",
+                       {ErrorObject{"tabulate"}, ": duplicate column \"", *twice,
+                        "\". Names must differ from each other and from \"t [s]\", the name of the first column."});
 }
 
 /// Unit at the end of a column's head: "m/s" of "speed [m/s]"; empty if the head has no unit.
@@ -75,8 +76,8 @@ std::vector<Figure> figures_of(Table const& table) {
 }  // namespace detail
 
 /// Completes a run and returns a table of `columns`. The rows are the first state, the first state at or after each
-/// multiple of `sampling` [s] from the start, and the last state. If `sampling` is zero, every state is a row. The
-/// first column is "t [s]".
+/// multiple of the time `sampling` [s] after the start, and the last state. If `sampling` is zero, every state is a
+/// row. The first column is "t [s]".
 /// \throws InvalidInput for columns without a name or a value, for equal names, and for a negative sampling.
 /// \throws NonFiniteValue for a value that is not finite, and the exceptions of the run.
 template <class Run>

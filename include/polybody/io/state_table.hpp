@@ -89,8 +89,9 @@ class StateColumns {
     if (head.unit.empty()) return;
     for (auto const& [column, place] : places_)
       if (column.starts_with(head.name + " [") && column.ends_with(']'))
-        throw InvalidInput("table.unit", {"state_from: the unit of the column \"", ErrorObject{column}, "\" is not [",
-                                          head.unit, "]. Convert its numbers and call it \"", head.text(), "\"."});
+        throw InvalidInput("table.unit",
+                           {"state_from: the unit of the column \"", ErrorObject{column}, "\" is not [", head.unit,
+                            "]. Convert its numbers and rename the column to \"", head.text(), "\"."});
   }
 
   std::unordered_map<std::string, std::size_t> places_;
@@ -129,7 +130,7 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
       throw InvalidInput(
           "table.no_column",
           {"state_from: the table has no column \"", ErrorObject{heads.all[i].text()},
-           "\". A state needs the time and every coordinate and velocity of its model; see state_columns."});
+           "\". A state needs the time and every coordinate and velocity of its model; state_columns lists them."});
     numbers.push_back(found ? table.rows[row].at(*found) : 0.0);
   }
   auto next = numbers.begin() + 1;

@@ -54,8 +54,11 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
                                          ErrorValue{sides}, "."});
   auto const* c = std::get_if<Circle>(&bar.section);
   if (!c)
-    throw InvalidInput("bar.no_section", {ErrorObject{"outline"},
-                                          ": the bar has constants, but no section. Give it a Rectangle or a Circle."});
+    throw InvalidInput(
+        "bar.no_section",
+        {ErrorObject{"outline"},
+         ": the bar has no section. Define the bar by `section`, a Rectangle or a Circle, and `material`, not by "
+         "`constants`."});
   double const step = 2.0 * std::numbers::pi / sides, radius = c->radius * std::sqrt(step / std::sin(step));
   std::vector<Vec2> points;
   for (int i = 0; i < sides; ++i) points.emplace_back(radius * std::cos(i * step), radius * std::sin(i * step));

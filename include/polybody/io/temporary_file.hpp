@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Temporary file of an AtomicFile, and its POSIX calls. On systems without POSIX the file has a name from the
-/// beginning, and the operating system decides when its bytes are written to the disk.
+/// Temporary file of an AtomicFile, and its POSIX calls. On systems without O_TMPFILE the file has a name from the
+/// beginning. On systems without POSIX the operating system decides when the bytes are written to the disk.
 
 #if __has_include(<unistd.h>)
 #include <fcntl.h>
@@ -28,8 +28,8 @@ inline std::filesystem::path temporary_next_to(std::filesystem::path const& file
   return file.parent_path() / (name + ".tmp");
 }
 
-/// File that replaces another one when it is complete. Linux creates it without a name (O_TMPFILE), so a killed
-/// program leaves no file. On file systems without unnamed files it has a hidden name. Move-only.
+/// File that replaces another one when it is complete. Linux creates it without a name (O_TMPFILE), so a killed program
+/// leaves no file. On file systems without unnamed files the file has a hidden name. Move-only.
 class TemporaryFile {
  public:
   TemporaryFile() = default;  ///< No file.
@@ -68,8 +68,8 @@ class TemporaryFile {
 #endif
   }
 
-  /// Writes all bytes to the disk, so after a loss of power either the old file or the complete new file exists.
-  /// Returns false if the bytes cannot be written; errno contains the reason.
+  /// Writes all bytes to the disk. After a loss of power, either the old file or the complete new file exists. Returns
+  /// false if the bytes cannot be written; errno contains the reason.
   bool flush() const {
     if (std::fflush(file_) != 0) return false;
 #if __has_include(<unistd.h>)
@@ -77,7 +77,7 @@ class TemporaryFile {
 #endif
     return true;
   }
-  /// Closes the file and renames it to its target. If one of these fails, removes the file and returns the reason.
+  /// Closes the file and renames it to its target. If this fails, removes the file and returns the reason.
   std::error_code put_in_place() {
     if (!is_named_ && !give_name()) {
       std::error_code const reason(errno, std::generic_category());

@@ -13,9 +13,9 @@
 
 namespace polybody {
 
-/// Visible part of a model in one state: surface, velocities and axial stresses of the points, and a frame. The frame
-/// of a shape fixed to a marker is the frame of the marker. The frame of a swept bar is the frame at the middle of the
-/// bar.
+/// Visible part of a model in one state: a surface, the velocities and axial stresses of its points, and a frame. The
+/// frame of a shape fixed to a marker is the frame of the marker. The frame of a swept bar is the frame at the middle
+/// of the bar.
 struct VisualPart {
   std::string name;                   ///< name of the part
   Surface surface;                    ///< surface in the state, world axes
@@ -24,7 +24,7 @@ struct VisualPart {
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
   Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
   std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of the frame [m]; empty for a bar
-  std::optional<World> world = {};    ///< plane or space, that of the body; empty for a part of the ground
+  std::optional<World> world = {};    ///< world of the body, plane or space; empty for a part of the ground
 };
 
 namespace detail {
@@ -62,7 +62,8 @@ class Visual {
   /// become polygons with this number of `sides`. If the body provides points outside of its axis, the points of a
   /// section follow the displacement field of the body. Otherwise, as for cables and planar bodies, the section is
   /// rigid and fixed to the frame on the axis.
-  /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
+  /// \throws InvalidInput for fewer than one piece, fewer than three sides of a round section, a handle of another
+  /// model, or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
@@ -79,7 +80,7 @@ class Visual {
   State const& reference() const { return reference_; }
 
   /// Returns all parts in state x. The reference is valid until the next call.
-  /// \throws InvalidInput for a state of another model, or if the model has changed.
+  /// \throws InvalidInput if the state is too short for the model, or if the model has changed.
   std::vector<VisualPart> const& at(State const& x) {
     layout_.watch.require_unchanged();
     for (std::size_t i = 0; i < parts_.size(); ++i) moves_[i](x, parts_[i]);

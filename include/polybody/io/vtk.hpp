@@ -42,7 +42,7 @@ class FileInPlace {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   }
-  /// Writes the buffered bytes to the file; one system call writes up to 4096 bytes. \throws IoError if this fails.
+  /// Writes the buffered bytes to the file, with one system call for up to 4096 bytes. \throws IoError if this fails.
   void flush() {
     errno = 0;
     require(std::fflush(file_.get()) == 0);
@@ -170,7 +170,7 @@ template <class = void>  // compiled where it is used
 class VtkWriterOf {
  public:
   /// Writes a collection without states to `file`.
-  /// \throws InvalidInput unless the name of the file ends in .pvd
+  /// \throws InvalidInput unless the name of the file ends in .pvd.
   /// \throws IoError if the file cannot be written.
   VtkWriterOf(std::filesystem::path const& file, Visual& visual)
       : visual_(&visual), file_(std::filesystem::absolute(file)), collection_((check(file), file_)) {
@@ -180,8 +180,8 @@ class VtkWriterOf {
   }
 
   /// Writes the grid of state x and adds it to the collection.
-  /// \throws InvalidInput unless the time of x is later than the previous time
-  /// \throws NonFiniteValue for coordinates that are not finite, IoError.
+  /// \throws InvalidInput unless the time of x is later than the previous time.
+  /// \throws NonFiniteValue for coordinates that are not finite; IoError if a file cannot be written.
   void write(State const& x) {
     if (!(x.t > last_))
       throw InvalidInput("film.time_order",

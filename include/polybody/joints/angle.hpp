@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), where x and y
-/// are constraint functions of constraint_functions.hpp:
+/// Constraint functions of angles. A vector with the components x and y along the first two axes of frame a has the
+/// angle θ = atan2(y, x). x and y are constraint functions of constraint_functions.hpp:
 ///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
 /// Angles are compared modulo a full turn, so that no data are stored between steps.
 
@@ -45,8 +45,9 @@ T angle_gamma(ConstraintTerms<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> 
   return (x * gamma[1] - y * gamma[0] - 2.0 * turning * (x * rate[0] + y * rate[1])) / n2;
 }
 
-/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n², to k: the change of the wrench of θ due to changes of x and
-/// y. Returns the multipliers λ (−y, x)/n²; the caller adds the wrench gradients of x and y with these multipliers.
+/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ) to k, with the Jacobians G_θ, G_x, G_y and G_r = (x G_x + y G_y)/n². This term is the
+/// change of the wrench G_θᵀ λ due to the factors x/n² and y/n² in G_θ. Returns the multipliers λ (−y, x)/n² of x and
+/// y. The caller adds the wrench gradients of x and y for these multipliers.
 template <class = void>  // compiled only if used
 Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient& k) {
   double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
@@ -61,8 +62,8 @@ Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient&
   return {-y * (lambda / n2), x * (lambda / n2)};
 }
 
-/// x = a₁·b₁ and y = a₂·b₁; their angle is the rotation of b relative to a about a₃. If b₁ is in the plane of a₁, a₂
-/// (as with a Revolute), θ̇ = a₃·(ω_b − ω_a). If b₁ is perpendicular to this plane, the angle is undefined.
+/// x = a₁·b₁ and y = a₂·b₁. The rotation of b relative to a about a₃ is θ = atan2(y, x). If b₁ is in the plane of a₁,
+/// a₂ (as with a Revolute), θ̇ = a₃·(ω_b − ω_a). If b₁ is perpendicular to this plane, the angle is undefined.
 template <StateScalar T>
 ConstraintTerms<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   ConstraintTerms<2, T> xy;
@@ -86,8 +87,8 @@ void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda
 }
 
 /// Writes g = u·d − p θ to `row`: a coupled translation and rotation. u (3) is fixed in a, θ is the rotation of b about
-/// a₃, and p has the unit [m/rad]. The translation determines the number of full turns, g = −p wrap(θ − u·d/p), so that
-/// |g| ≤ π |p|.
+/// a₃, and p has the unit [m/rad]. The translation determines the number of full turns, g = −p wrapped(θ − u·d/p), so
+/// that |g| ≤ π |p|.
 template <int m, StateScalar T>
 void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms,
                     int row) {

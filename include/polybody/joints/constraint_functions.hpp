@@ -25,7 +25,7 @@ void coincident(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& ter
   }
 }
 
-/// Writes g = u·w to `row`: ġ = (u × w)·(ω_a − ω_b).
+/// Writes g = u·w, with u fixed in a and w fixed in b, to `row`: ġ = (u × w)·(ω_a − ω_b).
 template <int m, StateScalar T>
 [[gnu::always_inline]] inline void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, ConstraintTerms<m, T>& terms,
                                                  int row) {
@@ -44,7 +44,7 @@ inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> co
   return 2.0 * dot(ud, wd) + dot(udd, w) + dot(u, wdd);
 }
 
-/// Writes g = u·d to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
+/// Writes g = u·d, with u fixed in a and d = r_b − r_a, to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
 template <int m, StateScalar T>
 [[gnu::always_inline]] inline void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b,
                                             ConstraintTerms<m, T>& terms, int row) {
@@ -88,8 +88,8 @@ T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
   return (squared_norm(rate) - along * along / d2) / sqrt(d2);
 }
 
-/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, with the rotations δφ in world
-/// axes.
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches wa = Gaᵀλ and wb = Gbᵀλ, with the rotations
+/// δφ in world axes.
 using WrenchGradient = Mat<double, 12, 12>;
 
 /// Adds λ times the wrench gradient of `perpendicular` to k: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ)
@@ -154,7 +154,7 @@ Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
 }
 
 /// Right-handed triad with \p first as its first and \p third as its third axis; `what` names the joint.
-/// \throws InvalidInput unless both are unit vectors at right angles (to 1e-9).
+/// \throws InvalidInput unless `first` and `third` are perpendicular unit vectors (to 1e-9).
 template <class = void>  // compiled only if used
 Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   require_unit(first, what, ": the first axis");
@@ -286,8 +286,8 @@ struct FixedDistance {
 
 /// Constraint equations Es of a joint geometry, in the order of their rows. A geometry names its list,
 ///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
-/// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
-/// directions follow from the list.
+/// The constraint function of the geometry with Jacobians, γ, the wrench gradient, the required marker kinds and the
+/// free directions follow from the list.
 template <class... Es>
 struct EquationList {
   static_assert((ConstraintEquation<Es> && ...),
@@ -297,7 +297,7 @@ struct EquationList {
   static constexpr bool opposite_ends = (Es::opposite_ends && ...);
   static constexpr MarkerKind needs = std::max({Es::needs...});
   static constexpr MarkerKind needs_of_second = std::max({Es::needs_of_second...});
-  /// Motions that no equation prevents: translations along the axes of the joint, then rotations about them.
+  /// Motions that no equation prevents: translations along the axes of the joint, then rotations about these axes.
   static constexpr FreeDirections free = [] {
     FreeDirections out = {true, true, true, true, true, true};
     auto const remove = [&]<class E>(E const*) {

@@ -73,7 +73,7 @@ RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
 template <class G>
 concept HasEquationList = requires { G::Equations::rows; };
 
-/// Number of constraint equations of a geometry: its member `rows`, or that of its list.
+/// Number of constraint equations of a geometry: its member `rows`, or that of its list; zero without both.
 template <class G>
 constexpr int constraint_equations() {
   if constexpr (requires { G::rows; })
@@ -161,8 +161,8 @@ constexpr bool has_opposite_ends() {
     return false;
 }
 
-/// Motions of b relative to a that a geometry leaves free: translations along the joint's axes, then rotations about
-/// them.
+/// True for each motion of b relative to a that a geometry leaves free: three translations along the joint's axes, then
+/// three rotations about these axes.
 using FreeDirections = std::array<bool, 6>;
 
 /// Number of translations in `free`.

@@ -12,8 +12,8 @@ namespace polybody {
 /// Driving constraint: b is rotated relative to a by ψ(t) about the common third axis. Use it together with a
 /// Revolute. 1 constraint equation
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
-/// wrapped to [−π, π], so that full turns need not be counted. If b₁ is in the plane of a₁, a₂ (as with the Revolute),
-/// ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
+/// g is wrapped to [−π, π], so that full turns need not be counted. If b₁ is in the plane of a₁, a₂ (as with the
+/// Revolute), ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
 template <class Law>
 struct PrescribedAngle {
   static_assert(detail::require_time_function<Law>());
@@ -21,7 +21,7 @@ struct PrescribedAngle {
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
-  static constexpr double period = 2.0 * std::numbers::pi;  ///< the angle is determined up to multiples of this [rad]
+  static constexpr double period = 2.0 * std::numbers::pi;  ///< period of the prescribed angle [rad]
 
   Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
   TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
@@ -104,7 +104,7 @@ struct PrescribedDistance {
 /// Driving constraint: the point of b has the position s(t) relative to the point of a along the axis fixed in a. Use
 /// it together with a joint that permits this translation. 1 constraint equation
 ///   g = a₃·(r_b − r_a) − s      [Haug 1989, §3.5].
-/// World::both: in the plane, the axis is a vector in the plane.
+/// In a planar model, the axis is a vector in the plane.
 template <class Law>
 struct PrescribedTranslation {
   static_assert(detail::require_time_function<Law>());

@@ -14,8 +14,7 @@ namespace polybody {
 /// ψ_a and ψ_b are the angles of the line of centres d = r_b − r_a in the axes of a and of b [Haug 1989, §3.4]. The
 /// line of centres rotates with the carrier of the wheels, so that the same equation applies to wheels on the ground
 /// and to planet wheels. Numbers of teeth are integers, so that full turns need not be counted: g is wrapped to
-/// [−π/n_b, π/n_b] with n_b = N_b/gcd(N_a, N_b). Other joints keep the axes parallel and the distance of the centres
-/// constant.
+/// |g| ≤ π gcd(N_a, N_b)/|N_b|. Other joints must keep the axes parallel and the distance of the centres constant.
 struct Gear {
   static constexpr char const* name = "Gear";
   static constexpr int rows = 1;
@@ -39,7 +38,7 @@ struct Gear {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
       throw InvalidInput("gear.teeth",
                          {ErrorObject{what}, ": the numbers of teeth are ", int(teeth_a), " and ", int(teeth_b),
-                          ", but none may be zero, and at most one may be negative (a ring gear)."});
+                          ", but neither may be zero, and at most one may be negative (a ring gear)."});
     for (int const teeth : {int(teeth_a), int(teeth_b)})
       if (teeth < -most_teeth || teeth > most_teeth)
         throw InvalidInput("gear.teeth", {ErrorObject{what}, ": a wheel has at most ", most_teeth,
@@ -115,9 +114,9 @@ struct Gear {
 
 /// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation
 ///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
-/// θ is the rotation of b about a₃; it is zero at the reference configuration if a₁·d is zero. The translation
-/// determines the number of full turns. Other joints constrain the pinion's height over the rack and the direction of
-/// its axis. With a rack on the ground, the pinion is a wheel that rolls.
+/// θ is the rotation of b about a₃. At the reference configuration θ is zero if a₁·d is zero. The translation
+/// determines the number of full turns in θ. Other joints must constrain the pinion's height over the rack and the
+/// direction of its axis. With a rack on the ground, the pinion is a wheel that rolls.
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr World world = World::both;

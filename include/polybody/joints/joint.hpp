@@ -112,7 +112,8 @@ constexpr auto default_policy() {
 }
 }  // namespace detail
 
-/// G declares its free directions if P needs them: a bushing acts on all other directions.
+/// G declares its free directions, or P does not use free directions. A bushing uses them: its force acts on all other
+/// directions.
 template <class P, class G>
 concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::template Measured<G>; };
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Direction of a joint. There is no default direction: `connect` refuses a joint without one.
+/// Direction of a joint. There is no default direction: `connect` refuses a joint without a direction.
 
 #include <polybody/joints/constraint_functions.hpp>
 
@@ -23,7 +23,7 @@ class JointAxis {
   bool given() const { return given_; }  ///< true if a direction is given
   /// Direction without a check; (0, 0, 1) if none is given.
   operator Vec3 const&() const { return value_; }  // NOLINT
-  /// \throws InvalidInput if no direction is given; `what` names joint and direction.
+  /// Given direction (3). \throws InvalidInput if no direction is given; `what` names joint and direction.
   Vec3 const& required(std::string const& what) const {
     if (!given_)
       throw InvalidInput(

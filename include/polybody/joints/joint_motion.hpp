@@ -76,7 +76,8 @@ JointMotions motions_of(G const& geometry) {
 }
 
 /// Selects the `motions` of a joint that stay in the plane: translations perpendicular to the normal, and the rotation
-/// about the normal. The normal is one of the joint's axes. \param axes (3×3) axes of the joint, as columns
+/// about the normal. The normal is one of the joint's axes.
+/// \param axes (3×3) columns are the joint's axes in world axes
 template <class = void>  // compiled only if used
 JointMotions in_plane(JointMotions const& motions, Mat3 const& axes) {
   auto const is_normal = [&](int axis) { return std::abs(axes(2, axis)) > 0.5; };

@@ -47,12 +47,12 @@ struct KnifeEdge {
 /// Thin disc b that rolls without slip on a plane of a. 3 constraint equations; the last two constrain velocities
 ///   g₁ = n·d − R √(1 − (n·b₃)²),  ġ = [n, t₁, t₂]ᵀ u,  u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p  [Neimark & Fufaev 1972].
 /// d = r_b − r_a; n is the plane's normal, t₁ and t₂ are two directions in the plane, all fixed in a; b₃ is the disc's
-/// axis. The contact point is the point of the rim nearest to the plane. The vector to it from the disc's centre is ρ =
-/// −R e, e = m/|m| with m = n − (n·b₃) b₃. The vector to it from the point of a is p = d + ρ. u is the velocity of the
-/// disc's material point at the contact point, relative to a. Since n·ρ is minimal at ρ, n·u equals ġ₁. λ are the
-/// forces along n, t₁, t₂; the first is negative if the plane pushes. A disc that lies flat has no contact point, and
-/// steps near this configuration fail with values that are not finite. Lift-off and slip are not modelled: the joint
-/// also pulls, and transmits any tangential force.
+/// axis. The contact point is the point of the rim nearest to the plane. The vector from the disc's centre to the
+/// contact point is ρ = −R e, e = m/|m| with m = n − (n·b₃) b₃. The vector from the point of a to the contact point is
+/// p = d + ρ. u is the velocity of the disc's material point at the contact point, relative to a. The contact point
+/// minimises n·ρ over the rim, so that n·u equals ġ₁. λ are the forces along n, t₁, t₂; the first is negative if the
+/// plane pushes. A disc that lies flat has no contact point, and steps near this configuration fail with values that
+/// are not finite. Lift-off and slip are not modelled: the joint also pulls, and transmits any tangential force.
 struct RollingDisc {
   static constexpr char const* name = "RollingDisc";
   static constexpr int rows = 3;
@@ -65,7 +65,7 @@ struct RollingDisc {
   JointAxis normal = {};    ///< (3) unit vector from the plane towards the disc; the point of a is in the plane
 
   /// Triad with the first axis n × axis and the third axis `axis`, so that n = a₂ |n × axis| + a₃ n·axis. \throws
-  /// InvalidInput unless both are unit vectors and not parallel.
+  /// InvalidInput unless `axis` and `normal` are unit vectors and not parallel.
   template <class = void>  // compiled only if used
   Mat3 triad() const {
     Vec3 const &own = axis.required("RollingDisc: the axis"), &up = normal.required("RollingDisc: the normal");

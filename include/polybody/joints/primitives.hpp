@@ -5,7 +5,8 @@
 ///   Prismatic = PointOnLine + ConstantOrientation         Weld        = CoincidentPoints + ConstantOrientation
 ///   Cylindrical = PointOnLine + ParallelAxes              PlanarJoint = PointInPlane + ParallelAxes
 ///   PointOnLine = two of PointInPlane                     ConstantOrientation = ParallelAxes + PerpendicularAxes
-/// The named joint has the same motion and evaluates its frames only once.      [Haug 1989, §9.4]
+/// The joint on the left permits the same motion as the primitives and evaluates the frames of its markers only once.
+/// [Haug 1989, §9.4]
 
 #include <polybody/joints/constraint_functions.hpp>
 #include <polybody/joints/joint_axis.hpp>
@@ -15,7 +16,7 @@ namespace polybody {
 
 /// The point of b stays in the plane through the point of a whose normal is fixed in a. 1 constraint equation
 ///   g = a₃·d,  d = r_b − r_a      [Haug 1989, §9.4].
-/// World::both: in the plane, the normal is a vector in the plane, and the point stays on the line perpendicular to it.
+/// In a planar model, the normal is a vector in the plane, and the point of b stays on the line perpendicular to it.
 struct PointInPlane {
   static constexpr char const* name = "PointInPlane";
   static constexpr World world = World::both;

@@ -58,7 +58,7 @@ struct RelativeCoordinates {
   }
 
   /// γ of the rotations: w = Jl ṡ + ψ̇ n, and ẇ = −ω_a × w for constant ω_a and ω_b, so that
-  ///   [s̈; ψ̈] = B (ẇ − J̇l ṡ − ψ̇ ṅ),  ṅ = w × n.
+  ///   [s̈; ψ̈] = B (ẇ − J̇l ṡ − ψ̇ ṅ),  ṅ = w × n,  with B of `Turn`.
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Turn<T> const x(a, b);
@@ -77,8 +77,8 @@ struct RelativeCoordinates {
     return gamma;
   }
 
-  /// The moment of the rotations on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ. For a rotation δθ of b
-  /// relative to a in a's axes,
+  /// The multipliers λ (3) of the rotations cause the moment Aa μ on b, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ and
+  /// B of `Turn`. For a rotation δθ of b relative to a in a's axes,
   ///   δn = δθ × n,  δκ = −Jr⁻¹ ∂(Jr κ)/∂s δs,  δy = (δn − y δn₃)/(1 + n₃).
   template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 const& lambda) const {
@@ -156,8 +156,8 @@ struct RelativeCoordinates {
 template <JointGeometry G>
 struct ConstrainedCoordinates {
   static_assert(HasFreeDirections<G>,
-                "Bushing does not support this geometry, because it does not declare its free directions (static "
-                "member `free`). Use Constraint or Penalty.");
+                "Bushing does not support this geometry, because the geometry does not declare its free directions "
+                "(static member `free`). Use Constraint or Penalty.");
   static constexpr int rows = 6;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();

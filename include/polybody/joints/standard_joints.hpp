@@ -165,7 +165,7 @@ struct Screw {
   void check(std::string const& what) const {
     if (!std::isfinite(pitch) || pitch == 0.0)
       throw InvalidInput("screw.pitch", {ErrorObject{what}, ": the pitch must be finite and not zero, but is ",
-                                         ErrorValue{pitch}, " m. A screw without pitch is a Revolute."});
+                                         ErrorValue{pitch}, " m/rad. A screw without pitch is a Revolute."});
   }
 };
 

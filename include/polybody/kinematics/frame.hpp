@@ -10,7 +10,7 @@ namespace polybody {
 template <StateScalar T = double>
 struct Frame {
   Vec<T, 3> r = Vec<T, 3>::Zero();  ///< (3) origin [m]
-  Mat<T, 3, 3> A = identity<T>();   ///< (3×3) columns are the marker's axes
+  Mat<T, 3, 3> A = identity<T>();   ///< (3×3) columns are the marker's axes in world axes
   Vec<T, 3> v = Vec<T, 3>::Zero();  ///< (3) velocity of the origin [m/s]
   Vec<T, 3> w = Vec<T, 3>::Zero();  ///< (3) angular velocity [rad/s]
 };
@@ -40,7 +40,7 @@ enum class MarkerKind { point, axis, frame };
 /// Dimension of a body: plane or space. A joint connects bodies of equal dimension; the ground has both dimensions.
 enum class World { plane, space, both };
 
-/// True if bodies of the dimensions a and b can be connected: both plane, both space, or one of them the ground.
+/// True if bodies of the dimensions a and b can be connected: both plane, both space, or at least one the ground.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
 /// Initial position and orientation of a body in the world.
@@ -59,7 +59,8 @@ struct Placement {
     return {origin, exp_so3<double>(rotation)};
   }
 
-  /// \throws InvalidInput naming `what` unless the placement is finite and its axes are orthonormal and right-handed.
+  /// \throws InvalidInput naming `what` unless the placement is finite, its coordinates are at most `largest_number`,
+  /// and its axes are orthonormal and right-handed.
   template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     require_finite(origin, what, ": the placement's origin");

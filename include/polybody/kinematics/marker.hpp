@@ -86,7 +86,7 @@ namespace detail {
 inline void require_filled(std::uint64_t model) {
   if (model == 0)
     throw InvalidInput("model.empty_handle", {"A default-constructed handle refers to no object of a model. Assign the "
-                                              "result of add, connect or apply to it."});
+                                              "result of add, connect or apply to the handle."});
 }
 }  // namespace detail
 
@@ -108,13 +108,14 @@ struct Ground {
   static constexpr MarkerKind observes = MarkerKind::frame;  ///< its markers provide a full frame
   using Point = Placement;                                   ///< position and axes of a marker
 
-  /// Marker at `origin` [m] with axes parallel to the world axes.
+  /// Marker at `origin` (3) [m] with axes parallel to the world axes. \throws InvalidInput if `origin` is not finite.
   template <class = void>  // compiled where it is used
   Point at(Vec3 const& origin) const {
     require_finite(origin, "Ground: the point");
     return Placement::at(origin);
   }
-  /// Marker at `placement`. \throws InvalidInput if the axes of `placement` are not orthonormal and right-handed.
+  /// Marker at `placement`. \throws InvalidInput if `placement` is not finite, or if its axes are not orthonormal and
+  /// right-handed.
   template <class = void>  // compiled where it is used
   Point at(Placement const& placement) const {
     placement.check("Ground");
@@ -151,7 +152,8 @@ struct BodyHandle {
   Marker<B> at(Args const&... args) const {
     return named([&](B const& on) { return on.at(args...); });
   }
-  /// Marker at the material point `point` [m], which may be written in braces.
+  /// Marker at the material point `point` (3) [m], in the axes that the body's function `at` uses. The point may be
+  /// written in braces: `at({x, y, z})`.
   Marker<B> at(Vec3 const& point) const
     requires(B::world != World::plane) && requires(B const b, Vec3 p) { b.at(p); }
   {
@@ -178,7 +180,7 @@ struct BodyHandle {
   auto at(std::initializer_list<double>) const {
     static_assert(std::is_void_v<Body>,
                   "This body has no such point. A bar has at(s), the distance along its axis [m]; a rigid body has "
-                  "at({x, y, z}) [m], a planar one at({x, y}). The members `at` of the body list all forms.");
+                  "at({x, y, z}) [m], a planar rigid body at({x, y}). The members `at` of the body list all forms.");
     return Marker<B>{};
   }
 

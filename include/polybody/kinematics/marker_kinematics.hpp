@@ -12,19 +12,22 @@ namespace polybody {
 /// Storage format of a marker's Jacobian.
 enum class JacobianShape : unsigned char {
   ground,  ///< no columns
-  rigid,   ///< [1, −A ũ; 0, A] for [ṙ; ω_body]; only A and the moment arm ρ = A u are stored
-  dense    ///< 6×n matrix
+  /// [1, −A ũ; 0, A] for [ṙ; ω_body], with the position u of the marker in body axes. Only A and the moment arm ρ = A u
+  /// are stored.
+  rigid,
+  dense  ///< 6×n matrix
 };
 
-/// Marker kinematics: frame, Jacobian J and bias acceleration of a marker; twist [ṙ; ω] = J v, twist˙ = J v̇ + bias.
+/// Marker kinematics: frame, Jacobian J and bias acceleration of a marker. The twist is V = [ṙ; ω] = J v, and its
+/// rate is V̇ = J v̇ + bias.
 template <StateScalar T = double>
 struct MarkerKinematics {
   Frame<T> frame;                          ///< position, axes and velocities
-  Vec<T, 6> bias = Vec<T, 6>::Zero();      ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
+  Vec<T, 6> bias = Vec<T, 6>::Zero();      ///< V̇ for v̇ = 0, world axes [m/s²], [rad/s²]
   Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid format only: rotation matrix A of the body
   Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid format only: moment arm ρ = A u, world axes [m]
-  T* jacobian = nullptr;                   ///< dense only: J, 6×columns, column-major; memory of the evaluated data
-  Index first = 0;                         ///< index of the first generalised velocity in J
+  T* jacobian = nullptr;                   ///< dense format only: J, 6×columns, column-major; in the memory of `Data`
+  Index first = 0;                         ///< index in the model of the generalised velocity of column 0
   Index columns = 0;                       ///< number of columns of J
   JacobianShape shape = JacobianShape::ground;  ///< storage format of J
 

@@ -164,13 +164,14 @@ class BlockSink {
   BlockSlots slots_;
 };
 
-/// Callable that writes the blocks of a matrix into a sink, with erased type. The callable must outlive this object.
+/// Type-erased reference to a callable that writes the blocks of a matrix into a sink. The callable must outlive the
+/// reference.
 class BlockWriter {
  public:
   /// Refers to f, which is called as f(sink).
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, BlockWriter> && std::invocable<F const&, BlockSink&>)
-  BlockWriter(F const& f)  // NOLINT(google-explicit-constructor): stands for the callable
+  BlockWriter(F const& f)  // NOLINT(google-explicit-constructor): reference to the callable
       : what_(&f), call_([](void const* what, BlockSink& sink) { (*static_cast<F const*>(what))(sink); }) {}
   void operator()(BlockSink& sink) const { call_(what_, sink); }  ///< writes all blocks into `sink`
 

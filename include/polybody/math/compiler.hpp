@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Requirements on the compiler and its options. Every header of the library includes this file, directly or through
-/// other headers, before its first declaration.
+/// Requirements on the compiler and its options. Every header of the library except version.hpp includes this file,
+/// directly or through other headers, before its first declaration.
 
 // After each #error, a missing file is included. This fatal error ends the compilation, so that no other messages
 // follow.

@@ -87,8 +87,8 @@ struct ErrorTime : MessagePart {
   explicit ErrorTime(MessagePart const& part) : MessagePart(part, Role::time) {}
 };
 
-/// Part of a message that contains the message of another error. The data of the other error are used if no
-/// earlier part sets them.
+/// Part of a message that contains the message of another error. The code, object, value and time of the other error
+/// are used if no earlier part sets them.
 struct ErrorCause : MessagePart {
   /// Message and data of `cause`, which must outlive the part.
   explicit ErrorCause(Error const& cause) : MessagePart(cause) {}
@@ -222,14 +222,14 @@ class InconsistentInitialConditions : public Error {
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// Newton's method did not converge. The state of the run is that at the start of the step.
+/// Newton's method did not converge. The run keeps the state at the start of the step.
 class NewtonConvergenceFailure : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// The step converged, but constraint equations are violated or the energy changed without work. The state of the run
-/// is that at the start of the step.
+/// The step converged, but constraint equations are violated or the energy changed without work. The run keeps the
+/// state at the start of the step.
 class Diverged : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`

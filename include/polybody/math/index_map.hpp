@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Sorted map with few entries, from indices to values, with short compile times.
+/// Map from indices to values, sorted by index. It compiles fast and is intended for few entries.
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +82,7 @@ class IndexMap {
   Sequence<Entry> entries_;
 };
 
-/// Largest magnitude of the values.
+/// Largest magnitude of the values of `c`; zero if `c` is empty.
 inline double largest_size(IndexMap<double> const& c) {
   double largest = 0.0;
   for (auto const& [i, value] : c) largest = std::max(largest, std::abs(value));

@@ -20,7 +20,8 @@ class MonotoneTable {
   };
 
   /// Table through `points`: at least two, finite, with strictly increasing x.
-  /// \throws InvalidInput otherwise, or if a derivative or an area exceeds `largest_number`; `what` begins the message.
+  /// \throws InvalidInput for other points, and if a value, derivative or area exceeds `largest_number`; `what` begins
+  /// the message.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
       throw InvalidInput("table.too_few_points", {ErrorObject{what}, ": a table needs at least two points, but has ",
@@ -31,10 +32,10 @@ class MonotoneTable {
         throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1,
                                                 " of the table must be finite, but is (", p.x, ", ", p.y, ")."});
       if (i > 0 && !(p.x > points[i - 1].x))
-        throw InvalidInput(
-            "table.not_increasing",
-            {ErrorObject{what}, ": the abscissae of the table must increase, but point ", i + 1, " has ",
-             ErrorValue{p.x}, " after ", points[i - 1].x, ". Sort the points and remove repeated ones."});
+        throw InvalidInput("table.not_increasing",
+                           {ErrorObject{what}, ": the abscissae of the table must increase, but point ", i + 1,
+                            " has x = ", ErrorValue{p.x}, " after x = ", points[i - 1].x,
+                            ". Sort the points and remove repeated ones."});
       knots_.push_back({p.x, p.y, 0.0, 0.0});
     }
     set_derivatives();
@@ -94,8 +95,8 @@ class MonotoneTable {
   }
 
   /// Checks that no value, derivative or area exceeds `largest_number`. Derivatives are large if neighbouring abscissae
-  /// differ only in the last digit of a double. The bound of |y| in a piece of length h is |y| + h (|m| + h (|a| + h
-  /// |b|)).
+  /// differ only in the last digit of a double. In a piece of length h, |y| + h (|m| + h (|a| + h |b|)) bounds the
+  /// values. The symbols are those of `Cubic`.
   void check_pieces(std::string const& what) const {
     for (std::size_t i = 1; i < knots_.size(); ++i) {
       Knot const &k = knots_[i - 1], &next = knots_[i];

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Gauss–Legendre rules on [0, 1], exact for polynomials of degree 2n − 1 [Abramowitz & Stegun 1964, 25.4.29],
-/// computed at compile time.
+/// Gauss–Legendre rules of n points on [0, 1], computed at compile time. They are exact for polynomials up to degree
+/// 2n − 1 [Abramowitz & Stegun 1964, 25.4.29].
 
 #include <array>
 
@@ -33,8 +33,8 @@ constexpr LegendreValue legendre(int n, double x) {
   return {now, n * (before - x * now) / (1.0 - x * x)};
 }
 
-/// Roots of the Legendre polynomial P_n. The roots of P_{n−1} separate the roots of P_n. Bisection between them is
-/// followed by Newton's method.
+/// Roots of the Legendre polynomial P_n. The roots of P_{n−1} and the ends ±1 bracket each root. Bisection of the
+/// bracket yields the initial value for Newton's method.
 template <int n>
 constexpr std::array<double, n> legendre_roots() {
   std::array<double, n> roots{};
@@ -52,7 +52,7 @@ constexpr std::array<double, n> legendre_roots() {
           lo = mid;
       }
       double x = 0.5 * (lo + hi);
-      for (int k = 0; k < 5; ++k) {  // starts within 1/256 of the interval: quadratic convergence
+      for (int k = 0; k < 5; ++k) {  // the initial error is below 1/256 of the bracket
         LegendreValue const f = legendre(n, x);
         x -= f.p / f.dp;
       }

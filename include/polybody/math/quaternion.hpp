@@ -1,13 +1,14 @@
 #pragma once
 /// \file
-/// Unit quaternions (w, x, y, z) as four coordinates of a state; ⊞ and ⊟ act in body axes.
+/// Unit quaternions (w, x, y, z) as four coordinates of a state. The increments of ⊞ and ⊟ are rotation vectors in body
+/// axes.
 /// [Solà, Deray & Atchuthan 2018, §4; Shabana 2020, §2.4]
 
 #include <polybody/math/so3.hpp>
 
 namespace polybody {
 
-/// Quaternion (w, x, y, z). A(q) transforms body components into world components.
+/// Quaternion q = (w, x, y, z). Its rotation matrix A(q) transforms components of vectors from body axes to world axes.
 template <class T>
 using Quaternion = Vec<T, 4>;
 
@@ -96,7 +97,7 @@ Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   return turned;
 }
 
-/// Difference q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to the sign of the quaternion).
+/// Difference q ⊟ p = log(p⁻¹ q): the rotation vector δ [rad], body axes, with p ⊞ δ = ±q.
 template <class T>
 Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
   return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
@@ -106,7 +107,7 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
 template <class T>
 Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
   using std::sqrt;
-  // starts with the largest of 4w², 4x², 4y², 4z², whose square root is accurate [Shepperd 1978]
+  // the largest of 4w², 4x², 4y², 4z² is computed without cancellation [Shepperd 1978]
   T const trace = a(0, 0) + a(1, 1) + a(2, 2);
   int largest = -1;  // axis of the largest diagonal entry; −1 if the trace is larger
   T most = trace;

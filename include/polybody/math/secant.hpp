@@ -6,8 +6,8 @@
 
 namespace polybody {
 
-/// Secant: values `a` and `b` of a function f at the two ends of a step and its slopes `d` = s with respect to N
-/// variables, f₁ − f₀ = s·(x₁ − x₀). Formulas propagate slopes as dual numbers propagate derivatives [slopes:
+/// Secant: values `a` = f₀ and `b` = f₁ of a function f at the two ends of a step, and slopes `d` = s with respect to N
+/// variables x, with f₁ − f₀ = s·(x₁ − x₀). Formulas propagate slopes as dual numbers propagate derivatives [slopes:
 /// Krawczyk & Neumaier 1985; Rump 1996]. The rules are symmetric in the two ends:
 ///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁).
 /// Therefore s is a discrete gradient [Gonzalez 1996]: f₁ − f₀ = s·(x₁ − x₀) holds exactly, and s is the gradient at

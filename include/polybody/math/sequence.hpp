@@ -168,13 +168,13 @@ class Sequence {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// True if both arrays have equal values.
+/// True if both arrays have the same size and equal values.
 template <class T>
 bool operator==(Sequence<T> const& a, Sequence<T> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// Removes all values for which `goes` is true.
+/// Removes all values for which `goes(value)` returns true.
 template <class T, class F>
 void erase_if(Sequence<T>& values, F const& goes) {
   std::size_t kept = 0;

@@ -8,7 +8,8 @@
 
 namespace polybody {
 
-/// Values of `n` shape functions and their derivatives with respect to the arc length x = ξ l.
+/// Values of `n` shape functions of an element of length l, and their derivatives with respect to the arc length
+/// x = ξ l [m]. Units of derivatives are those of shape functions without unit.
 template <int n>
 struct ShapeValues {
   std::array<double, n> s;    ///< values s
@@ -21,7 +22,8 @@ constexpr ShapeValues<2> linear_shape(double xi, double length) {
   return {{1.0 - xi, xi}, {-1.0 / length, 1.0 / length}, {0.0, 0.0}};
 }
 
-/// Cubic Hermite shape functions of (r₀, r₀′, r₁, r₁′) on an element of length l = `length` [m]:
+/// Cubic Hermite shape functions on an element of length l = `length` [m]. They multiply the positions r and gradients
+/// r′ of both nodes, (r₀, r₀′, r₁, r₁′):
 /// s₁ = 1 − 3ξ² + 2ξ³, s₂ = l(ξ − 2ξ² + ξ³), s₃ = 3ξ² − 2ξ³, s₄ = l(−ξ² + ξ³)
 /// [thesis Eq. 3.16, s₃ with the sign of Eq. 4.8].
 constexpr ShapeValues<4> hermite_shape(double xi, double length) {

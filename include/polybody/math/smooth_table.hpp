@@ -25,9 +25,9 @@ class SmoothTable {
     std::optional<double> last_rate = {};   ///< rate at the last point [m/s] or [rad/s]
   };
 
-  /// Natural spline through `points`.
+  /// Natural spline through `points`: zero acceleration at both ends.
   /// \throws InvalidInput for fewer than two points, for times that do not increase, and for points or coefficients of
-  /// the spline that are not finite.
+  /// the spline that are not finite or exceed `largest_number`.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
   /// Spline with prescribed rates at the ends. \throws InvalidInput if the points, the rates or the coefficients are
   /// not valid; `what` begins the message.
@@ -58,7 +58,7 @@ class SmoothTable {
     return {k.value + x * (k.rate + x * (k.second / 2.0 + x * k.third / 6.0)),
             k.rate + x * (k.second + x * k.third / 2.0), k.second + x * k.third};
   }
-  /// Integral ∫ value dt from the first point to t.
+  /// Integral ∫ value dt from the first point to t: [m s] or [rad s].
   double integral(double t) const { return integral_to(piece(t), t); }
   /// Times of the ends at which the acceleration is discontinuous [s].
   std::vector<double> breakpoints() const { return breakpoints_; }
@@ -80,9 +80,10 @@ class SmoothTable {
         throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1, " must be finite, but has t = ",
                                                 points[i].time, " s and the value ", points[i].value, "."});
       if (i > 0 && !(points[i].time > points[i - 1].time))
-        throw InvalidInput("table.not_increasing", {ErrorObject{what}, ": the times must increase, but point ", i + 1,
-                                                    " at t = ", ErrorValue{points[i].time}, " s follows a point at ",
-                                                    points[i - 1].time, " s."});
+        throw InvalidInput(
+            "table.not_increasing",
+            {ErrorObject{what}, ": the times must increase, but point ", i + 1, " at t = ", ErrorValue{points[i].time},
+             " s follows a point at ", points[i - 1].time, " s. Sort the points and remove repeated times."});
     }
     require_finite(ends.first_rate.value_or(0.0), what, ": the rate at the first point");
     require_finite(ends.last_rate.value_or(0.0), what, ": the rate at the last point");

@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// Rotations in space: exponential map, logarithm and their Jacobians, smooth at zero.
+/// Rotations in space: exponential map, its Jacobians and their inverse, accurate near zero rotation. The logarithm is
+/// in quaternion.hpp.
 ///
-/// Convention: A = exp(φ̃) transforms body components into world components. Increments act on the right (body axes),
-/// A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona & Arnold 2012, App. A]
+/// Convention: A = exp(φ̃) transforms components of vectors from body axes to world axes; φ̃ is `skew(φ)`. Increments act
+/// on the right (body axes), A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona & Arnold
+/// 2012, App. A]
 
 #include <array>
 
@@ -12,7 +14,8 @@
 
 namespace polybody {
 
-/// Matrix 1 + b ã + c ã² for the vector a. Explicit entries compile faster than matrix products of Eigen.
+/// Matrix 1 + b ã + c ã² (3×3) for the vector a, with ã = `skew(a)`. Explicit entries compile faster than matrix
+/// products of Eigen.
 template <class T>
 Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
   Mat<T, 3, 3> m;
@@ -54,8 +57,8 @@ struct ExpSeries {
     }
   }
 
-  /// Sum Σ (−x)ᵏ/(n + 2k)! by Horner's rule. Five terms are sufficient for x < 1e-3 (the rotation in one step), eight
-  /// for x < 1/4. The first neglected term is below 1e-19.
+  /// Sum Σ (−x)ᵏ/(n + 2k)! by Horner's rule. Five terms are sufficient for x < 1e-3 (typical of the rotation in one
+  /// step), eight for x < 1/4. The first neglected term is below 1e-19.
   static T series(T const& x, int n) { return value_of(x) < 1e-3 ? series_of<5>(x, n) : series_of<8>(x, n); }
 
  private:
@@ -93,7 +96,8 @@ struct RotationDerivatives {
 };
 
 /// Functions a = atan t/t and m = (1 − a)/t² of z = t² with their derivatives da/dz, dm/dz. Near zero they are
-/// evaluated by series. A rotation by θ about n with c = t n, t = tan(θ/4), has the rotation vector 4 a c.
+/// evaluated by series. A rotation by θ about the unit vector n with c = t n, t = tan(θ/4), has the rotation vector
+/// 4 a c.
 template <class T>
 struct ArctanSeries {
   T a, m, da, dm;  ///< functions and derivatives with respect to z, without unit
@@ -119,27 +123,29 @@ struct ArctanSeries {
   }
 };
 
-/// Rotation matrix exp(φ̃) = 1 + a φ̃ + b φ̃² (Rodrigues), 3×3; φ in [rad].
+/// Rotation matrix exp(φ̃) = 1 + a φ̃ + b φ̃² (Rodrigues), 3×3, with a, b of `RotationSeries`; φ in [rad].
 template <class T>
 Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(squared_norm(phi));
   return one_and_skew<T>(phi, s.a, s.b);
 }
 
-/// Right Jacobian Jr(φ) = 1 − b φ̃ + c φ̃²: exp(φ + δ) ≈ exp(φ) exp(Jr δ), and ω_body = Jr φ̇.
+/// Right Jacobian Jr(φ) = 1 − b φ̃ + c φ̃², 3×3, with b, c of `RotationSeries`: exp(φ + δ) ≈ exp(φ) exp(Jr δ), and
+/// ω_body = Jr φ̇.
 template <class T>
 Mat<T, 3, 3> right_jacobian(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(squared_norm(phi));
   return one_and_skew<T>(phi, -s.b, s.c);
 }
 
-/// Left Jacobian Jl(φ) = Jr(−φ): ω_world = Jl φ̇.
+/// Left Jacobian Jl(φ) = Jr(−φ), 3×3: ω_world = Jl φ̇.
 template <class T>
 Mat<T, 3, 3> left_jacobian(Vec<T, 3> const& phi) {
   return right_jacobian<T>({-phi[0], -phi[1], -phi[2]});
 }
 
-/// Inverse right Jacobian Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − a/(2b))/|φ|², for |φ| < 2π.
+/// Inverse right Jacobian Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − a/(2b))/|φ|², for |φ| < 2π, with a, b of
+/// `RotationSeries`.
 template <class T>
 Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   T const x = squared_norm(phi);

@@ -3,14 +3,15 @@
 /// Lowest eigenvalues and eigenvectors of K x = λ M x with symmetric K and M, computed with a shift.
 ///
 /// Solvers that form M^-½ K M^-½ have errors of ε λₙ in every λ, with the round-off unit ε and the largest eigenvalue
-/// λₙ. In a thin rod λₙ belongs to shear waves of single elements. It exceeds the lowest λ by a factor of more than
+/// λₙ. In a thin rod λₙ belongs to shear waves of single elements and can exceed the lowest λ by a factor of more than
 /// 1/ε.
 ///
 /// With a shift τ and K + τM = L Lᵀ the eigenvalues
 ///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
-/// have errors of ε μ₁. The error of λ is therefore ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
-/// Motions without inertia have μ = 0. The errors of the shifted and the unshifted solver are equal at λ + τ = √(λₙ (λ₁
-/// + τ)). The shifted solver computes the eigenvalues below this limit, the unshifted solver those above.
+/// have errors of ε μ₁ with the largest eigenvalue μ₁. The error of λ is therefore ε (λ + τ)²/(λ₁ + τ) [Parlett 1998,
+/// §15.3; Ericsson & Ruhe 1980]. Motions without inertia have μ = 0. The errors of the shifted and the unshifted solver
+/// are equal at λ + τ = √(λₙ (λ₁ + τ)). The shifted solver computes the eigenvalues below this limit, the unshifted
+/// solver those above.
 ///
 /// The round-off of L adds errors of ε K_ii to the stiffness xᵀKx of every eigenvector x. Rayleigh quotients of the
 /// eigenvectors, summed in long double, remove these errors to second order.
@@ -34,12 +35,12 @@ struct ShiftedPencil {
   bool found = false;  ///< true if a shift was found
   double shift = 0.0;  ///< τ, unit of λ
   VecX values = {};    ///< λ in ascending order; infinite for motions without inertia, which are last
-  MatX vectors = {};   ///< (n×n) eigenvectors with xᵀMx = 1
+  MatX vectors = {};   ///< (n×n) eigenvectors with xᵀMx = 1; zero for motions without inertia
 };
 
-/// Solves K x = λ M x with K + τM = L Lᵀ. The pivots of L are at least 1e-8 of the diagonal, so that the errors of L
-/// remain below those of the entries of K. The shift τ is the first of 0, t, 64 t, 64² t … that yields such pivots; t
-/// is 1e-12 of the smallest |K_ii|/M_ii.
+/// Solves K x = λ M x with K + τM = L Lᵀ. The squared pivots L_ii² are at least 1e-8 of the diagonal entries of K + τM.
+/// The errors of L then remain below those of the entries of K. The shift τ is the first of 0, t, 64 t, 64² t … that
+/// yields such pivots; t is 1e-12 of the smallest nonzero |K_ii|/M_ii. `found` is false if 16 shifts fail.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite
 template <class = void>  // compiled where it is used
 ShiftedPencil by_shift(MatX const& k, MatX const& m) {
@@ -89,8 +90,8 @@ double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& 
   return double(stiffness / mass);
 }
 
-/// Replaces the lowest eigenvalues and eigenvectors, if they come from a solver with errors of ε λₙ, by those of a
-/// shifted solver. Nothing changes if these errors are below 1e-9 of each of the `count` lowest λ.
+/// Replaces the lowest given eigenvalues and eigenvectors by those of `by_shift`. Nothing changes if the error ε λₙ of
+/// the given eigenvalues is below 1e-9 of each of the `count` lowest |λ|. ε is the round-off unit and λₙ the largest λ.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite \param count number of required
 /// eigenvalues
 /// \param values (r) all λ, ascending \param vectors X (n×r), XᵀMX = 1
@@ -114,7 +115,7 @@ bool renew_low_end(MatX const& k, MatX const& m, Index count, VecX& values, MatX
     values.tail(n - renewed) = high.eigenvalues();
     vectors.rightCols(n - renewed) = MatX(vectors * (rest * high.eigenvectors()));
   }
-  std::vector<std::pair<double, Index>> order;  // quotients of a double eigenvalue may change their order
+  std::vector<std::pair<double, Index>> order;  // Rayleigh quotients of a double eigenvalue may be unsorted
   for (Index i = 0; i < renewed; ++i)
     order.emplace_back(i < count ? rayleigh_quotient<>(k, m, low.vectors.col(i)) : low.values[i], i);
   std::sort(order.begin(), order.begin() + std::min(count, renewed));

@@ -32,7 +32,8 @@ class Tape {
 
   /// Records an independent variable.
   Number variable() { return record(0, 0.0, 0, 0.0); }
-  /// Records an operation with the arguments `a` and `b`. `by_a` and `by_b` are the partial derivatives of its result.
+  /// Records an operation with the arguments `a` and `b`. Its result has the partial derivatives `by_a` and `by_b` with
+  /// respect to the arguments.
   Number record(Number a, double by_a, Number b, double by_b) {
     if (size_ >= operations_.size()) [[unlikely]]
       grow();
@@ -88,7 +89,7 @@ class Tape {
   [[gnu::cold]] void grow() {
     if (this == &none_)
       throw InvalidInput("tape.not_recording", {"A ReverseVar was calculated while no tape was active. Keep a "
-                                                "Tape::On alive during the calculation."});
+                                                "Tape::On object alive during the calculation."});
     operations_.resize(std::max<std::size_t>(2 * operations_.size(), 4096));
   }
 
@@ -102,14 +103,14 @@ class Tape {
 inline Tape Tape::none_;
 inline thread_local constinit Tape* Tape::current_ = &Tape::none_;
 
-/// Value, and number of the operation on the current tape that computed it.
+/// Scalar for reverse differentiation: a value, and the number of the operation on the current tape that computed it.
 struct ReverseVar {
   double v = 0.0;           ///< value, in the unit of the quantity
   Tape::Number number = 0;  ///< number of the operation that computed the value; zero for a constant
 
   ReverseVar() = default;
   /// The constant `value`.
-  ReverseVar(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a recorded number
+  ReverseVar(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a ReverseVar
   ReverseVar(double value, Tape::Number of) : v(value), number(of) {}  ///< value with the number `of` on the tape
 
   /// Independent variable with the value `value`.

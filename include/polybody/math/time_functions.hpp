@@ -37,13 +37,15 @@ constexpr bool require_time_function() {
 }
 }  // namespace detail
 
-/// Function of time with known breakpoints of its rate [s]; `simulate` ends a step at each of them.
+/// Function of time with a member `breakpoints()`: times [s] at which the value or a derivative jumps. `simulate` ends
+/// a step at each breakpoint.
 template <class L>
 concept HasBreakpoints = requires(L const law) {
   { law.breakpoints() } -> std::convertible_to<std::vector<double>>;
 };
 
-/// Calls `law.check(what)` if the law has this member. \throws InvalidInput for invalid values.
+/// Calls `law.check(what)` if the law has this member; `what` begins the message. \throws InvalidInput for invalid
+/// values.
 template <TimeFunction Law>
 void check_time_function(Law const& law, std::string const& what) {
   if constexpr (requires { law.check(what); }) law.check(what);
@@ -70,7 +72,7 @@ void check_driving_function(Law const& law, std::string const& what) {
     if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
       throw InvalidInput("time_function.jump",
                          {ErrorObject{what}, ": the value jumps from ", before, " to ", ErrorValue{after}, " at t = ",
-                          ErrorTime{t}, " s, but a body cannot jump. Reach the value by a Ramp or SmoothRamp."});
+                          ErrorTime{t}, " s, but a body cannot jump. Use a Ramp or SmoothRamp instead of the jump."});
   }
 }
 
@@ -182,8 +184,8 @@ struct SmoothRamp {
   }
 };
 
-/// Spin-up of Kane, Ryan & Banerjee 1987 from rest to the rate `speed` within `duration` T: ψ = (speed/T)[t²/2 +
-/// (T/2π)²(cos(2πt/T) − 1)] for t ≤ T, and ψ = speed (t − T/2) afterwards.
+/// Spin-up of Kane, Ryan & Banerjee 1987 from rest at t = 0 to the rate `speed` within `duration` T. The angle is
+/// ψ = (speed/T)[t²/2 + (T/2π)²(cos(2πt/T) − 1)] for 0 ≤ t ≤ T, and ψ = speed (t − T/2) afterwards.
 struct SpinUp {
   Required<double> speed;     ///< final rate [rad/s]
   Required<double> duration;  ///< duration T of the spin-up [s]

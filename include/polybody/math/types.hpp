@@ -65,7 +65,7 @@ Mat<T, 3, 3> identity() {
 template <class T>
 struct Required {
   T value;  ///< given value
-  /// Converts the T `v`: `.mass = 2.0` sets a `Required<double>`.
+  /// Converts the value `v` of type T: `.mass = 2.0` sets a `Required<double>`.
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
   /// Converts an expression `x` that is convertible to T.
   template <class X>
@@ -129,7 +129,7 @@ inline void require_size(double x, std::string_view what, std::string_view part 
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
     throw InvalidInput("value.magnitude",
                        {ErrorObject{what}, part, " must be zero or have a magnitude in [1e-150, 1e+150], but is ",
-                        ErrorValue{x}, ". The square of other numbers overflows or underflows."});
+                        ErrorValue{x}, ". The square of a number outside this range overflows or underflows."});
 }
 /// Text for messages: " is not finite", or a finite x with the limit `largest_number` that it exceeds.
 template <class = void>  // compiled where it is used

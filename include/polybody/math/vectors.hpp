@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Loops over long vectors with SIMD operations. g++ at -O2 does not vectorise plain loops.
+/// Loops over long vectors with SIMD operations. g++ at -O2 does not vectorise loops of run-time length.
 
 #include <cstdint>
 

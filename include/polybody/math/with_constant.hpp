@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Conversion of a small number into a compile-time constant, so that loops over it are unrolled.
+/// Conversion of a small number into a compile-time constant, so that loops of this length are unrolled.
 
 #include <type_traits>
 

@@ -65,9 +65,9 @@ class Workers {
 
   int size() const { return int(thrown_.size()); }  ///< number of threads that share a loop, including the calling one
 
-  /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. Parts begin at multiples of four
-  /// and have at least `least` indices. The calling thread executes a loop of one part alone. If several parts throw,
-  /// the exception of the first of them is thrown again.
+  /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. The number of parts is n/`least`,
+  /// limited to the range from one to `size()`. Parts begin at multiples of four. The calling thread executes a loop of
+  /// one part alone. If several parts throw, the exception of the first of them is thrown again.
   void over(Index n, Index least, ParallelBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
@@ -91,7 +91,8 @@ class Workers {
         std::rethrow_exception(first);
       }
   }
-  /// Overload for any f that is callable as f(begin, end), with at least `least` indices of [0, n) per thread.
+  /// Overload for any f that is callable as f(begin, end). The number of parts of [0, n) is n/`least`,
+  /// limited to the range from one to `size()`.
   template <class F>
   void over(Index n, Index least, F const& f) {
     over(n, least, ParallelBody(f));
@@ -138,11 +139,12 @@ class Workers {
   void (*call_)(void const*, int) = nullptr;
   void const* what_ = nullptr;
   std::atomic<unsigned> round_{0}, running_{0};  // an overflow of round_ is harmless
-  Sequence<std::thread> others_;                 // last member: the threads use the others
+  Sequence<std::thread> others_;                 // last member: the threads use the other members
 };
 
-/// Calls f(begin, end) for parts of [0, n), on the threads of `workers`, with at least `least` indices per thread.
-/// Calls f(0, n) if `workers` is null.
+/// Calls f(begin, end) for parts of [0, n) on the threads of `workers`. The number of parts is n/`least`, limited to
+/// the
+/// range from one to the number of threads. Calls f(0, n) if `workers` is null.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
   ParallelBody const body(f);

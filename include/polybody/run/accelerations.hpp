@@ -35,8 +35,9 @@ void compute_accelerations(M const& model, State& x) {
 
 namespace detail {
 
-/// Requires equilibrium of the forces in a state x whose accelerations are all zero, such as one from `reference_state`
-/// or `assemble`. The limit of the unbalanced force is 1e-6 times the largest load, weight, applied force or reaction.
+/// Requires equilibrium of the forces in a state x whose accelerations are all zero, such as a state from
+/// `reference_state` or `assemble`. The limit of the unbalanced force is 1e-6 times the largest load, weight, applied
+/// force or reaction.
 /// \throws InvalidInput otherwise.
 template <class = void>
 [[gnu::cold]] void require_accelerations(System system, State const& x) {
@@ -80,7 +81,7 @@ inline bool lacks_accelerations(State const& x) { return largest_size(x.a) == 0.
 /// `simulate`. The integrators `EnergyMomentum` and `EnergyDecaying` are an exception: they store the mean
 /// accelerations of the last step. Call `compute_accelerations` for their states, for those of `reference_state()` and
 /// `assemble`, and for states that were changed by hand. Accelerations of implicit integrators and of `Rattle` satisfy
-/// G v̇ = −γ only up to the error of the method, those of forward dynamics exactly.
+/// G v̇ = −γ only up to the error of the method. Accelerations of forward dynamics satisfy this equation exactly.
 /// \throws InvalidInput for a marker or state of another model, and for a state without accelerations: all are zero,
 /// but the forces are not in equilibrium.
 template <class M, class B>
@@ -116,7 +117,8 @@ std::span<double const> accelerations_of(M const& model, State const& x, BodyHan
   if (detail::lacks_accelerations(x)) detail::require_accelerations(System(model, with<Capabilities::motion>), x);
   return std::span(x.a.data() + (v.data() - x.v.data()), v.size());
 }
+/// Deleted: the result would refer to a temporary state.
 template <class M, class B>
-std::span<double const> accelerations_of(M const&, State&&, BodyHandle<B> const&) = delete;  ///< temporary x
+std::span<double const> accelerations_of(M const&, State&&, BodyHandle<B> const&) = delete;
 
 }  // namespace polybody

@@ -49,7 +49,7 @@ class AnyModel {
       if (run.integrator == &detail::integrator_tag<I>) return run.make(model_.get());
     throw InvalidInput("system.missing_capability",
                        {"AnyModel was made without the integrator ", ErrorObject{I::name},
-                        ". Give it to the constructor: AnyModel(model, stepped_by<...>)."});
+                        ". Add this integrator to the list in AnyModel(model, stepped_by<...>)."});
   }
 
  private:

@@ -46,7 +46,7 @@ class AxialForceMonitor {
         shares[i] = body.axial_share(body.body, part(x.q, body.q0, body.coordinates),
                                      part(x.v, body.v0, body.velocities), part(x.a, body.v0, body.velocities),
                                      system.layout().gravity, {loads_[i].data(), loads_[i].size()});
-      } catch (InvalidInput const&) {  // NOLINT(bugprone-empty-catch): the welds do not determine axial forces
+      } catch (InvalidInput const&) {  // NOLINT(bugprone-empty-catch): the axial forces are unknown
       }
     }
     next_ = x.t + every_;
@@ -60,7 +60,7 @@ class AxialForceMonitor {
            (share < 0.0 ? "in compression" : "in tension"), " at t = ", x.t, " s with ", 100.0 * largest_,
            " % of the load that buckles them. The deflection neglects this force; the relative error of the deflection "
            "is about the same percentage. Make the body with .stiffening = true and .frame = FfrFrame::mean_axes, as "
-           "`from` does."});
+           "`Ffr::from` does."});
       warnings.push_back(said_);
     }
   }

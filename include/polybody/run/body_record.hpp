@@ -63,7 +63,7 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
       throw InvalidInput(
           "record.gap",
           {ErrorObject{who}, "there is no sample between ", between(k), ", a gap of more than ", ErrorValue{gap},
-           " s. Record every step, or give a largest_gap up to which samples are interpolated."});
+           " s. Record every step, or set largest_gap [s], up to which samples are interpolated."});
 }
 
 /// Rigid body in the plane or in space. `at(u)` is the point at the vector u from the centre of mass, in the body's

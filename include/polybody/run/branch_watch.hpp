@@ -19,8 +19,9 @@ class BranchWatch {
     if (system.rows() > 0) usual_ = forward.constraint_gain(system, x.q, x.v, x.t);
   }
 
-  /// Adds a warning if the step ends at a state x near a singular configuration; only the first such step of a run is
-  /// reported. Steps are examined only if they changed the velocities by more than a tenth and factorised a matrix.
+  /// Adds a warning if the step ends at a state x near a singular configuration. Only the first warning of a run is
+  /// added. Steps are examined only if they changed the velocities by more than a tenth of their norm and factorised a
+  /// matrix.
   /// \param v velocities before the step
   /// \param warnings warnings of the run
   template <class Solver>
@@ -43,10 +44,11 @@ class BranchWatch {
     for (std::string const& warning : warnings)
       if (warning.starts_with(what)) return;
     if (!forward.is_singular(system, {x.q, x.v, x.t}, usual_)) return;
-    warnings.push_back(what + number(x.t) +
-                       " s, and the velocities jump in the step that ends there. At this singular configuration the "
-                       "motion can change to another branch, and the step and the integrator select the branch. "
-                       "Compare the run with a run of another step length.");
+    warnings.push_back(
+        what + number(x.t) +
+        " s, and the velocities jump in the step that ends at this time. At this singular configuration the motion can "
+        "change to another branch, and the step and the integrator select the branch. Compare the run with a run of "
+        "another step length.");
   }
 
   ConstraintGain usual_;

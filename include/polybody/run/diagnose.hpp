@@ -154,9 +154,10 @@ Diagnosis diagnose(M const& model, State const& x) {
 /// Writes the diagnosis as text, with one line for each finding.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Diagnosis const& c) {
-  out << sentence_of(
-      {"constraint violation ", c.violation.position, " (positions), ", c.violation.velocity, " (velocities)",
-       (c.violation.position > 0.0 ? ", the largest in " + c.largest_violated_joint : std::string()), "\n"});
+  out << sentence_of({"constraint violation ", c.violation.position, " m or rad (positions), ", c.violation.velocity,
+                      " m/s or rad/s (velocities)",
+                      (c.violation.position > 0.0 ? ", the largest in " + c.largest_violated_joint : std::string()),
+                      "\n"});
   out << sentence_of({c.redundancy.rows, " constraint equations of rank ", c.redundancy.rank, ", ",
                       c.redundancy.degrees_of_freedom,
                       c.redundancy.degrees_of_freedom == 1 ? " degree of freedom\n" : " degrees of freedom\n"});

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Energies in state x; `system` must have been evaluated at x. Dead loads have no potential, and their work is not
+/// Energies in state x [J]; `system` must have been evaluated at x. Dead loads have no potential, and their work is not
 /// counted. This function does not allocate memory.
 template <class = void>
 Energy energy(System const& system, State const& x) {
@@ -61,7 +61,7 @@ namespace detail {
 /// Centre of mass of the bodies with the generalised velocities [first, first + count). With the generalised velocities
 /// u_i of a unit translation along world axis i, and w_i of a unit rotation about this axis through the world's origin,
 ///   m = u_xᵀ M u_x,  m r = (w_zᵀ M u_y, −w_zᵀ M u_x, w_yᵀ M u_x),  m ṙ_i = u_iᵀ M v.
-/// In the plane w_y is zero, and so is r_z.
+/// In the plane, w_y and r_z are zero.
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index count) {
   VecX mv = VecX::Zero(system.velocities()), rigid = mv, u = mv;

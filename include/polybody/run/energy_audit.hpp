@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// Powers in state x with its multipliers; `system` must have been evaluated at x, and made with
+/// Powers [W] in state x with its multipliers; `system` must have been evaluated at x, and made with
 /// `Capabilities::energy`. `backwards` (nv) is workspace. Constraint equations of bodies (Euler parameters) and linear
 /// joints do no work and are omitted. A potential is assumed to be a function of the frames alone.
 template <class = void>
@@ -19,7 +19,7 @@ Powers powers(System const& system, State const& x, VecX& backwards) {
   backwards = -x.v;
   return system.operations().powers({x.q, x.v, x.t}, backwards, x.lambda, system.load_factor, system.data());
 }
-/// Powers in state x; this overload allocates its workspace.
+/// Powers [W] in state x. This overload allocates its workspace.
 template <class = void>
 Powers powers(System const& system, State const& x) {
   VecX backwards;
@@ -32,11 +32,11 @@ Powers powers(System const& system, State const& x) {
 /// The unaccounted energy is numerical: gains or losses of the integrator, and the error of the trapezoidal rule. The
 /// error of the rule is h²/12 times the increase of the time derivatives of the powers [Euler–Maclaurin formula]. Each
 /// jump of a power adds an error of about ½ h times the jump (loads at breakpoints, closing contacts with dampers). The
-/// multipliers of a state must belong to its time. This holds for the states of `simulate`, also with eliminated
-/// equations (JointCoordinates, AncfLinear), but not for states that are constructed by hand. The multipliers of
-/// `EnergyMomentum` and `EnergyDecaying` belong to the middle of the step, so that the work of drives has an error of
-/// O(h). `record` does not allocate memory. The model must outlive the audit and must not change after its
-/// construction.
+/// multipliers of a state must belong to its time. This condition holds for the states of `simulate`, also with
+/// eliminated equations (JointCoordinates, AncfLinear), but not for states that are constructed by hand. The
+/// multipliers of `EnergyMomentum` and `EnergyDecaying` belong to the middle of the step, so that the work of drives
+/// has an error of O(h). `record` does not allocate memory. The model must outlive the audit and must not change after
+/// its construction.
 template <class = void>  // compiled only if used
 class EnergyAuditOf {
  public:

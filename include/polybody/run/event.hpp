@@ -23,9 +23,9 @@ struct Event {
   std::function<void(State&)> action = {};
   /// Impacts accumulate if they follow each other within `tolerance`: a ball with a restitution below one comes to
   /// rest. Without `rests`, the run then throws InvalidInput. With `rests`, the value is held at zero from this time
-  /// on: coordinates and velocities are projected onto value = 0 after each step, in the mass norm. This ends if the
-  /// value at the end of a step has the sign that it had before the event. Accelerations and multipliers do not include
-  /// the force that holds the value.
+  /// on: coordinates and velocities are projected onto value = 0 after each step, in the mass norm. The value is
+  /// released if it has, at the end of a step, the sign that it had before the event. Accelerations and multipliers do
+  /// not include the force that holds the value.
   bool rests = false;
 };
 

@@ -54,7 +54,7 @@ template <class = void>
   throw InvalidInput(
       "event.action",
       {"The action of the event \"", ErrorObject{event.name}, "\" at t = ", ErrorTime{before.t}, " s violates ",
-       full.name_of(full.velocities() + row), " by ", ErrorValue{open}, ", but the limit is ", tolerance,
+       full.name_of(full.velocities() + row), " by ", ErrorValue{open}, " (m or rad), but the limit is ", tolerance,
        " (`assembly_tolerance`). Change velocities only, or call assemble(model, x) in the action."});
 }
 

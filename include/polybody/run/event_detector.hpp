@@ -125,8 +125,8 @@ struct EventPlace {
   /// True if the sign of the value y differs from the stored sign. False if the stored sign is unknown.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
   /// True if the value may have crossed zero twice within a step of length h [s] that ends with the value `now`. The
-  /// parabola through the last three values then has its extremum within the step, at less than half of both end
-  /// values.
+  /// parabola through the last three values then has its extremum within the step, and this extremum is beyond zero or
+  /// less than half as large as the smaller end value. True also if the third value is unknown.
   bool may_turn(double now, double h) const {
     if (side != 1 && side != -1) return false;
     if (!(span > 0.0)) return true;
@@ -141,7 +141,9 @@ struct EventPlace {
     side = sign(now);
   }
   /// Counts an action at t [s] in a run with steps of `length` [s]. If actions accumulate, the value is held at zero
-  /// from now on. \throws InvalidInput if actions accumulate and `rests` of the event is false.
+  /// from now on. Actions accumulate after `repeats_allowed` repeated actions, each within the tolerance of the
+  /// preceding one, or after `actions_allowed` actions within one step length. If `stays` is true, one repeated action
+  /// is enough. \throws InvalidInput if actions accumulate and `rests` of the event is false.
   [[gnu::cold]] void count(Event const& event, double length, double t) {
     double const within = event.tolerance + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
     repeats = t - acted <= within ? repeats + 1 : 0;
@@ -263,7 +265,7 @@ class EventDetector {
     State const& full = motion.seen(x);
     for (Event const& event : events) now_.push_back(EventMotion::value(event, full));
   }
-  Sequence<EventPlace> places_;  // unchanged by a restart without action, so that its round-off causes no second event
+  Sequence<EventPlace> places_;  // unchanged by a restart without action, whose round-off then causes no second event
   Before before_;
   Sequence<double> now_;
   Sequence<int> met_;  // 1: event occurred, 2: value is held at zero

@@ -26,7 +26,7 @@ Index most_open(VecX const& phi) {
 namespace detail {
 
 /// Constraint violations in a state. If the extent of an assembly of bodies is below one metre, violations of lengths
-/// are divided by it. The extent is the largest distance of bodies and joint markers along a world axis.
+/// are divided by this extent. The extent is the largest distance of bodies and joint markers along a world axis.
 template <class = void>  // compiled only if used
 struct RelativeViolation {
   VecX absolute;  ///< Φ (rows) [m], [rad]
@@ -114,12 +114,13 @@ template <class = void>
   if (by > tolerance)
     throw InconsistentInitialConditions("initial_state.violation",
                                         {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by},
-                                         ". Place the bodies so that it closes, or call assemble(model, x)."});
+                                         " (m or rad). Place the bodies so that the violation vanishes, or call "
+                                         "assemble(model, x)."});
   throw InconsistentInitialConditions(
       "initial_state.violation",
       {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by}, " m, but the limit is ",
        tolerance * extent, " m: the tolerance ", tolerance, " times the extent ", extent,
-       " m of its assembly. Place the bodies so that it closes, or call assemble(model, x)."});
+       " m of its assembly. Place the bodies so that the violation vanishes, or call assemble(model, x)."});
 }
 
 /// \throws InconsistentInitialConditions if redundant equations contradict each other, so that no configuration
@@ -130,12 +131,12 @@ template <class Solver>
   forward.hold(system, x.q, x.v, x.t);
   VecX phi = VecX::Zero(system.rows());
   system.violation(phi);
-  require_consistent_constraints(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
+  require_consistent_constraints(system, forward, phi, detail::ContradictionLimits{}.position, "positions (m or rad)");
 }
 
-/// Corrects the coordinates until every joint is satisfied to `tolerance`, in at most `max_iterations` Gauss–Newton
-/// iterations with minimal changes in the mass norm. If the extent of an assembly of bodies is below one metre,
-/// violations of lengths are also at most 1e-9 of this extent. Then projects the velocities. \throws
+/// Corrects the coordinates until every joint is satisfied to `tolerance` [m], [rad], in at most `max_iterations`
+/// Gauss–Newton iterations with minimal changes in the mass norm. If the extent of an assembly of bodies is below one
+/// metre, violations of lengths are also at most 1e-9 of this extent. Then projects the velocities. \throws
 /// InconsistentInitialConditions naming the joint that cannot be satisfied, or the joints whose redundant equations
 /// contradict each other; InvalidInput for a quaternion whose norm is not one. After an exception x is unchanged.
 template <LinearSolver Solver = DefaultSolver>
@@ -154,10 +155,11 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
     if (k == max_iterations || !std::isfinite(before)) {
       require_closable(system, forward, trial);
       require_assembled(system, trial, tolerance);
-      throw InconsistentInitialConditions("assemble.not_converged",
-                                          {ErrorObject{"assemble"},
-                                           ": no configuration that satisfies all joints was found from this state. "
-                                           "Place the bodies closer to such a configuration, or check the lengths."});
+      throw InconsistentInitialConditions(
+          "assemble.not_converged",
+          {ErrorObject{"assemble"},
+           ": no configuration that satisfies all joints was found from this state. "
+           "Place the bodies closer to such a configuration, or check the lengths of the bodies."});
     }
   }
   forward.project_velocities(system, trial.q, trial.v, trial.t);
@@ -165,8 +167,8 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
   x = std::move(trial);
 }
 
-/// Corrects the coordinates of x until every joint of `model` is satisfied to `tolerance`, in at most `max_iterations`;
-/// then projects the velocities. Exceptions as for the overload for `System`.
+/// Corrects the coordinates of x until every joint of `model` is satisfied to `tolerance` [m], [rad], in at most
+/// `max_iterations` iterations. Then projects the velocities. Exceptions as for the overload for `System`.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   System system(model, with<Capabilities::motion>);
@@ -177,8 +179,8 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
 /// equations, then computes the accelerations and multipliers. The coordinates do not change, and the multipliers of
 /// redundant constraints are zero.
 /// \throws InconsistentInitialConditions naming a joint whose violation exceeds `tolerance` [m], [rad] (`assemble`
-/// closes it), or the joints with redundant equations that contradict each other; InvalidInput, SingularMatrix,
-/// NonFiniteValue. x is then unchanged.
+/// removes this violation), or the joints with redundant equations that contradict each other; InvalidInput,
+/// SingularMatrix, NonFiniteValue. x is then unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void make_consistent(System& system, State& x, double tolerance = 1e-8) {
   require_positive(tolerance, "make_consistent: the tolerance");

@@ -125,7 +125,7 @@ double joint_angle(System const& system, ElementHandle<J> const& joint) {
   return detail::angle_of(system, joint).value;
 }
 
-/// Rate of a joint angle [rad/s]: a₃·(ω_b − ω_a), with the axis a₃ of the joint in the first marker. `system` must have
+/// Rate of a joint angle [rad/s]: a·(ω_b − ω_a), with the axis a of the joint in the first marker. `system` must have
 /// been evaluated at the state. \throws InvalidInput like `joint_angle`.
 template <class J>
 double joint_angle_rate(System const& system, ElementHandle<J> const& joint) {
@@ -164,9 +164,10 @@ class TurnCounterOf {
   template <class M, class J>
   TurnCounterOf(M const& model, ElementHandle<J> const& joint)
       : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}
+  /// Deleted: a temporary model would not outlive the counter.
   template <class M, class J>
     requires(!std::same_as<M, System>)
-  TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;  ///< deleted: refuses temporaries
+  TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;
   /// Counter for a joint of `system`, a system of the full model.
   template <class J>
   TurnCounterOf(System system, ElementHandle<J> const& joint)

@@ -62,7 +62,7 @@ FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
   return [body, point = marker.point](State const& x) { return frame(body_in_state(body, x), point); };
 }
 
-/// Position of a material point [m].
+/// Position of a material point (3), world axes [m].
 template <class M, class B>
 Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
   return frame(model, x, marker).r;

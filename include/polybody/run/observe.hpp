@@ -42,8 +42,8 @@ Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
 
 }  // namespace detail
 
-/// Constraint violation of a joint; `system` must have been evaluated at the state. \throws InvalidInput for a handle
-/// of another model.
+/// Constraint violation of a joint (rows) [m], [rad] or [1]; `system` must have been evaluated at the state. \throws
+/// InvalidInput for a handle of another model.
 template <class J>
   requires(!LinearPolicy<typename J::PolicyType>)
 Vec<double, J::rows> constraint_violation(System const& system, ElementHandle<J> const& joint) {
@@ -131,7 +131,7 @@ Violation violation_of(System& system, State const& x) {
 }
 }  // namespace detail
 
-/// Largest constraint violations in state x; evaluates `system` there.
+/// Largest constraint violations in state x. Evaluates `system` at x.
 template <class = void>
 Violation largest_violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);

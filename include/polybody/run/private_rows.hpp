@@ -113,9 +113,9 @@ class RepeatedRows {
   Sequence<RowRelation> relations_;
 };
 
-/// Removes, body by body, all rows with entries in the velocities of a body if they are independent there: Gᵀc = 0 then
-/// requires c = 0 for these rows. The rows of a leaf of a tree are removed first, then those of the next body towards
-/// the root. The rows of loops remain. The cost is linear in the number of rows.
+/// Removes, body by body, all rows with entries in the velocities of a body, if these entries are linearly independent:
+/// Gᵀc = 0 then requires c = 0 for these rows. The rows of a leaf of a tree are removed first, then those of the next
+/// body towards the root. The rows of loops remain. The cost is linear in the number of rows.
 template <class = void>  // compiled only if used
 class PrivateRows {
  public:

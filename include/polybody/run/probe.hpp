@@ -18,12 +18,12 @@
 
 namespace polybody {
 
-/// System of the full `model`, for evaluations of its states. The model must outlive it.
+/// System of the full `model`, for evaluations of its states. The model must outlive the system.
 template <class M>
 [[gnu::cold]] System observation_system(M const& model) {
   return System(model, with<Capabilities::rigid_velocities>);
 }
-/// Refuses a temporary model, to which the system would keep a reference.
+/// Deleted: the system would keep a reference to a temporary model.
 template <class M>
 System observation_system(M const&& model) = delete;
 
@@ -40,7 +40,7 @@ SystemSource system_source(M const& model) {
 
 class ObservedState;
 
-/// Evaluates states of a model. Arrays are allocated once, and all questions about a state share one evaluation:
+/// Evaluates states of a model. Arrays are allocated once, and all results for one state share one evaluation:
 ///   Probe probe(model);
 ///   auto const now = probe.at(x);
 ///   now.energy().total();  now.reaction(pin).f;  now.position(rod.at(1.0));
@@ -54,12 +54,14 @@ class Probe {
   template <class M>
     requires(!std::same_as<M, System> && !std::same_as<M, Probe>)
   explicit Probe(M const&& model) = delete;  ///< deleted: a temporary model would not outlive the probe
-  /// Probe that makes its system at the first question. \param of system of the same model
+  /// Probe that makes its system at the first evaluation. \param source makes the system \param of any system of the
+  /// same model
   Probe(SystemSource const& source, System const& of) : source_(source), watch_(of.layout().watch) {}
   Probe(Probe const&) = delete;
   Probe& operator=(Probe const&) = delete;
 
-  /// State x with its evaluation. The result refers to x and to this probe. Nothing is evaluated before a question.
+  /// State x with its evaluation. The result refers to x and to this probe. x is evaluated only when a member function
+  /// of the result requires it.
   ObservedState at(State const& x);
   ObservedState at(State const&& x) = delete;  ///< deleted: a temporary state would not outlive the result
 
@@ -84,7 +86,8 @@ class Probe {
     watch_.require_unchanged();
     if (source_.make) return source_.make(source_.model);
     throw InvalidInput("system.missing_capability", {"This run was made from systems without ", ErrorObject{"a probe"},
-                                                     ". Make it by simulate(model, ...), or use Probe(model)."});
+                                                     ". Make the run with simulate(model, ...), or evaluate its states "
+                                                     "with Probe(model)."});
   }
   /// System evaluated at x. The last evaluation is used again if coordinates, velocities and time are the same.
   /// \throws InvalidInput for a state of another model, and if the model has changed.
@@ -123,9 +126,9 @@ class Probe {
   long evaluations_ = 0;
 };
 
-/// State with its evaluation: a state of a run, or the result of `Probe::at`. It refers to the state, so its members
-/// and answers always belong to the present content of that state. Every question compares this content with the last
-/// evaluation and evaluates again if they differ. To keep a state of a run, copy it: `State const kept = now`.
+/// State with its evaluation: a state of a run, or the result of `Probe::at`. An observed state refers to a state, so
+/// all results belong to the present content of that state. The evaluation is repeated if coordinates, velocities or
+/// time differ from those of the last evaluation. To keep a state of a run, copy it: `State const kept = now`.
 class ObservedState {
  public:
   double const& t;      ///< time [s]
@@ -164,12 +167,13 @@ class ObservedState {
   Frame<double> frame(Marker<B> const& marker) const {
     return polybody::frame(layout(), *x_, marker);
   }
-  /// Position of a material point (3) [m].
+  /// Position of a material point (3), world axes [m].
   template <class B>
   Vec3 position(Marker<B> const& marker) const {
     return frame(marker).r;
   }
-  /// Acceleration [m/s²] and angular acceleration [rad/s²] of a material point (6), from the accelerations `a`.
+  /// Acceleration [m/s²] and angular acceleration [rad/s²] of a material point (6), world axes, from the accelerations
+  /// `a`.
   template <class B>
   Vec6 twist_rate(Marker<B> const& marker) const {
     if constexpr (std::same_as<B, Ground>) {
@@ -181,12 +185,12 @@ class ObservedState {
       return detail::twist_rate(body, marker.point, *x_);
     }
   }
-  /// Acceleration of a material point (3) [m/s²].
+  /// Acceleration of a material point (3), world axes [m/s²].
   template <class B>
   Vec3 acceleration(Marker<B> const& marker) const {
     return twist_rate(marker).template head<3>();
   }
-  /// Angular acceleration of a material point (3) [rad/s²].
+  /// Angular acceleration of a material point (3), world axes [rad/s²].
   template <class B>
   Vec3 angular_acceleration(Marker<B> const& marker) const {
     return twist_rate(marker).template tail<3>();
@@ -196,7 +200,7 @@ class ObservedState {
   Vec6 section_forces(Marker<B> const& marker) const {
     return polybody::section_forces(layout(), *x_, marker);
   }
-  /// Strains (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the section of the beam at a marker.
+  /// Strains (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the section of the beam at a marker [1], [1/m].
   template <class B>
   Vec6 section_strains(Marker<B> const& marker) const {
     return polybody::section_strains(layout(), *x_, marker);
@@ -219,7 +223,7 @@ class ObservedState {
     return std::span(a.data() + (u.data() - v.data()), u.size());
   }
 
-  /// Constraint violation of a joint.
+  /// Constraint violation of a joint, one entry per constraint equation [m], [rad] or [1].
   template <class J>
   auto constraint_violation(ElementHandle<J> const& joint) const {
     return polybody::constraint_violation(evaluated(), joint);
@@ -229,7 +233,7 @@ class ObservedState {
   Violation largest_violation() const {
     return detail::violation_of(evaluated(), *x_);
   }
-  /// Force [N] and moment [N m] that a joint exerts on its second body, about the joint point there.
+  /// Force [N] and moment [N m] that a joint exerts on its second body, about the joint point on this body.
   template <class J>
   Wrench<double> reaction(ElementHandle<J> const& joint, ReactionAxes axes = ReactionAxes::world) const {
     return polybody::reaction(evaluated(), *x_, joint, axes);
@@ -260,12 +264,12 @@ class ObservedState {
     return polybody::joint_translation_rate(evaluated(), joint);
   }
 
-  /// Forces [N] and moments [N m] of a force element on its markers.
+  /// Forces [N] and moments [N m] of a force element on its markers, each about the origin of its marker, world axes.
   template <class F>
   auto applied_wrenches(ElementHandle<F> const& force) const {
     return polybody::applied_wrenches(probe_->with_forces(*x_), force);
   }
-  /// Power of a force element or of a drive on the bodies [W].
+  /// Power of a force element or of a drive on the bodies [W]; positive if it adds energy to the bodies.
   template <class E>
   double power(ElementHandle<E> const& element) const {
     return polybody::power(probe_->with_forces(*x_), *x_, element);
@@ -276,7 +280,7 @@ class ObservedState {
     polybody::for_each_contact(evaluated(), group, visit);
   }
 
-  /// True if the evaluations are those of `model`.
+  /// True if the probe evaluates states of `model`.
   template <class M>
   bool belongs_to(M const& model) const {
     return probe_->belongs_to(model);
@@ -304,7 +308,8 @@ class ObservedState {
 inline ObservedState Probe::at(State const& x) { return {x, *this}; }
 
 namespace detail {
-/// Answer about state x of a model. A state of a run of this model has an evaluation; for other states a probe is made.
+/// Evaluates a quantity, `question`, in state x of a model. An observed state of this model is evaluated by its own
+/// probe, other states by a new probe.
 template <class M, std::convertible_to<State const&> X, class F>
 auto answer(M const& model, X const& x, F const& question) {
   if constexpr (std::same_as<X, ObservedState>)
@@ -318,7 +323,7 @@ auto answer(M const& model, X const& x, F const& question) {
 template <class T>
 concept ProbedModel = !std::same_as<T, System>;
 
-/// Energies in state x of a model [J]. For many questions use `Probe`.
+/// Energies in state x of a model [J]. To evaluate several quantities in one state, use `Probe`.
 /// \throws InvalidInput for a state or a handle of another model, like all following functions
 template <ProbedModel M, std::convertible_to<State const&> X>
 Energy energy(M const& model, X const& x) {

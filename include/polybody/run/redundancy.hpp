@@ -48,9 +48,9 @@ struct ConstraintSink {
 };
 
 /// Rank-revealing factorisation Gᵀ P = Q [R₁, R₂; 0, 0] with a permutation P. The size of R₁ is the rank. The last rows
-/// of PᵀG depend on the first ones: Gᵀc = 0 for each column c of P [−R₁⁻¹R₂; 1]. Velocities are scaled first, then
-/// rows, so that every row of G has the norm 1 in any units. A row is redundant if its distance from the span of the
-/// rows before it is less than `threshold`.
+/// of PᵀG depend on the first ones: Gᵀc = 0 for each column c of P [−R₁⁻¹R₂; 1]. Columns of G (velocities) are scaled
+/// first, then rows, so that every row has the norm 1 in any units. A row is redundant if its distance from the span of
+/// the rows before it is less than `threshold`.
 template <class Ordering = Eigen::NaturalOrdering<int>>  // natural ordering: the later of two dependent joints is named
 class ConstraintFactor {
  public:
@@ -102,7 +102,8 @@ class ConstraintFactor {
  private:
   using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
 
-  /// Entries of G with velocities and rows scaled to the norm 1; sets `scale_`.
+  /// Entries of G after the scaling of columns, then of rows, to the norm 1. Stores the factors of the rows in
+  /// `scale_`.
   Sequence<RowEntry> scaled_entries(Index velocities, std::vector<Eigen::Triplet<double>> const& entries) {
     std::vector<double> of_velocity(std::size_t(velocities), 0.0);
     for (auto const& e : entries)

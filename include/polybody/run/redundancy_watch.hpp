@@ -36,8 +36,8 @@ class RedundancyWatch {
   }
 
  private:
-  /// A step with dropped equations. If the step fails, or violates a dropped equation (it was redundant only at a
-  /// singular configuration), the step is repeated with all equations, and later steps drop none.
+  /// Takes a step with dropped equations. If the step fails or violates a dropped equation, the step is repeated with
+  /// all equations, and later steps drop none. A violated equation was redundant only at a singular configuration.
   template <class Solver, class Step, class Restart>
   [[gnu::cold]] StepReport watched(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before,
                                    Step& step, Restart& restart) {
@@ -47,8 +47,7 @@ class RedundancyWatch {
       if (!is_open(system, forward.left_out(), x)) return report;
       tried = {report.iterations, report.factorisations, report.evaluations};
       x = before;
-    } catch (
-        NewtonConvergenceFailure const&) {  // the second attempt reports it if the dropped equations are not the cause
+    } catch (NewtonConvergenceFailure const&) {  // a second attempt with the same failure reports it
     }
     try {
       keeps_all_ = true;

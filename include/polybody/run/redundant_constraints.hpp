@@ -8,14 +8,15 @@
 namespace polybody {
 namespace detail {
 
-/// Limits of |c·b|/max |c| with Gᵀc = 0. Below these limits, redundant equations agree within round-off; b is Φ, Φ̇ or
-/// γ of a state.
+/// Limits of |c·b|/max |c|, where Gᵀc = 0 and b is Φ, Φ̇ or γ of a state. Below these limits, redundant equations agree
+/// within round-off.
 struct ContradictionLimits {
   double position = 1e-8;  ///< for Φ [m], [rad]
   double relative = 1e-6;  ///< for Φ̇ relative to 1 + max |v|, for γ relative to 1 + max |γ|
 };
 
-/// Names of the joints with entries in c (rows), each once: joint "a", joint "b".
+/// Names of the joints whose equations have nonzero coefficients in c (rows): joint "a", joint "b". Coefficients up to
+/// 1e-6 max |c| count as zero.
 template <class = void>
 std::string names_in(System const& system, VecX const& c) {
   std::string names, last;
@@ -39,8 +40,8 @@ struct ConstraintDependence {
   explicit ConstraintDependence(System const& s)
       : c(VecX::Zero(s.rows())), mu_(c), w_(VecX::Zero(s.velocities())), a_(w_) {}
 
-  /// Computes c for unknown i of `redundant_rows()`, with the last factorisation of `forward`. Returns false if the row
-  /// is only nearly redundant.
+  /// Computes c for the dropped unknown i of `forward.redundant_rows()`, with the last factorisation of `forward`.
+  /// Returns false if i is a velocity, or if its row is only nearly redundant.
   template <class Solver>
   [[gnu::cold]] bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
     if (i < system.velocities()) return false;
@@ -58,10 +59,10 @@ struct ConstraintDependence {
   VecX mu_, w_, a_;
 };
 
-/// Residual b − G a (rows) of a motion a that satisfies G a = b in all rows that were not dropped. In a dropped row
-/// with the null vector c, the residual is c·b. Its size is an upper bound of |c·b|/max |c|, since max |c| ≥ 1. One
-/// solution thus compares all rows with a limit; only rows beyond the limit require their null vectors. The last
-/// factorisation of `forward` must belong to the position of `system`.
+/// Residual b + G a (rows) of the smallest motion a that satisfies G a = −b in all rows that were not dropped. In a
+/// dropped row with the null vector c, the residual is c·b. The magnitude |c·b| is an upper bound of |c·b|/max |c|,
+/// since max |c| ≥ 1. One solution thus compares all rows with a limit; only rows beyond the limit require their null
+/// vectors. The last factorisation of `forward` must belong to the position of `system`.
 template <class Solver>
 [[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
   VecX a = VecX::Zero(system.velocities()), left = VecX::Zero(system.rows());
@@ -95,7 +96,8 @@ struct ConstraintCurvature {
     for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
     bias(system, zero_, rest_);
   }
-  /// c·γ(w) − c·γ(0) for the dropped rows, relative to the larger γ; values up to `limit` count as zero.
+  /// c·γ(w) − c·γ(0) for the dropped rows, relative to the larger of max |γ(w)| and max |γ(0)|. Values up to `limit`
+  /// count as zero.
   template <class Solver>
   VecX bent(System& system, ForwardDynamics<Solver>& forward) {
     bias(system, w, gamma_);
@@ -110,8 +112,8 @@ struct ConstraintCurvature {
     bias(system, w, gamma_);
     return differ(c, gamma_, rest_);
   }
-  /// True if the velocities v of the state do not determine a branch: the quadratic form is equal at v + s w and v − s
-  /// w, where s scales w to the size of v.
+  /// True if the velocities v of the state do not determine a branch: v is zero, or the quadratic form is equal at v +
+  /// s w and v − s w, where s scales w to the size of v.
   bool leaves_open(System& system, VecX const& c) {
     double const size = largest_size(x_.v);
     if (!(size > 0.0)) return true;
@@ -142,7 +144,8 @@ struct ConstraintCurvature {
 }  // namespace detail
 
 /// Warning text if x is a singular configuration, at which the motion can branch, and the velocities of x do not
-/// determine the branch: they are zero, or belong to several branches. Otherwise empty. Factorises `forward` at x.
+/// determine the branch. Such velocities are zero, or belong to several branches. Empty otherwise. Factorises `forward`
+/// at x.
 template <class Solver>
 [[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return "";
@@ -159,15 +162,15 @@ template <class Solver>
     return sentence_of({"The run starts in a singular configuration at t = ", x.t, " s: the constraint equations of ",
                         detail::names_in(system, relation.c),
                         " are redundant there, but not nearby. The motion can continue on several branches, and the "
-                        "initial velocities do not select one; the step and the integrator select it. Start near this "
-                        "configuration, or with velocities of one branch."});
+                        "initial velocities do not select one. The step and the integrator then select the branch. "
+                        "Start near this configuration, or with velocities of one branch."});
   }
   return "";
 }
 
 /// Checks that redundant constraint equations agree: c·b = 0 for every c with Gᵀc = 0. b is Φ, Φ̇ or γ of the evaluated
-/// `system`, and `forward` must be factorised. \param what name of b in the message \param limit largest permitted
-/// |c·b|/max |c|
+/// `system`, and `forward` must be factorised. \param what name of b and its unit, for the message \param limit largest
+/// permitted |c·b|/max |c|, in the unit of b
 /// \throws InconsistentInitialConditions naming the joints whose equations contradict each other.
 template <class Solver>
 [[gnu::cold]] void require_consistent_constraints(System& system, ForwardDynamics<Solver>& forward, VecX const& b,
@@ -192,9 +195,9 @@ template <class Solver>
   }
 }
 
-/// Checks that velocities that were projected onto the other rows also satisfy the dropped rows, to `limit`. Rows that
-/// are only nearly redundant can fail this check. \param rate Φ̇ at the projected velocities \throws
-/// InconsistentInitialConditions naming the violated joint.
+/// Checks that projected velocities satisfy |Φ̇| ≤ `limit` also in the dropped rows, which the projection omits. Rows
+/// that are only nearly redundant can fail this check. \param rate Φ̇ at the projected velocities [m/s], [rad/s]
+/// \throws InconsistentInitialConditions naming the violated joint.
 template <class Solver>
 [[gnu::cold]] void require_dropped_constraints_closed(System const& system, ForwardDynamics<Solver> const& forward,
                                                       VecX const& rate, double limit) {
@@ -203,10 +206,10 @@ template <class Solver>
       throw InconsistentInitialConditions(
           "constraints.nearly_redundant",
           {"The constraint equations of ", ErrorObject{system.name_of(i)},
-           " are nearly redundant and were omitted, but their velocities are violated by ",
-           ErrorValue{std::abs(rate[i - system.velocities()])}, " at t = ", ErrorTime{system.at().t},
-           " s. Move the joint away from this configuration, bring the masses of its bodies closer together, or give "
-           "it a compliant policy such as Penalty."});
+           " are nearly redundant and were omitted, but the velocities violate them by ",
+           ErrorValue{std::abs(rate[i - system.velocities()])}, " (m/s or rad/s) at t = ", ErrorTime{system.at().t},
+           " s. Start in another configuration, give the bodies of the joint more similar masses, or give the joint a "
+           "compliant policy such as Penalty."});
 }
 
 /// Checks the initial state of a run with projected velocities: redundant equations must agree in velocities and
@@ -220,10 +223,11 @@ template <class Solver>
   VecX b = VecX::Zero(system.rows());
   system.violation_rate(b);
   double const limit = limits.relative * (1.0 + largest_size(x.v));
-  require_consistent_constraints(system, forward, b, limit, "velocities");
+  require_consistent_constraints(system, forward, b, limit, "velocities (m/s or rad/s)");
   require_dropped_constraints_closed(system, forward, b, limit);
   system.acceleration_bias(b);
-  require_consistent_constraints(system, forward, b, limits.relative * (1.0 + largest_size(b)), "accelerations");
+  require_consistent_constraints(system, forward, b, limits.relative * (1.0 + largest_size(b)),
+                                 "accelerations (m/s² or rad/s²)");
 }
 
 }  // namespace polybody

@@ -4,8 +4,8 @@
 /// equation may be dropped if its coefficient in a null vector is large enough relative to the other coefficients. If
 /// the coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
 /// equations is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput.
-/// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient
-/// of its last row, which may pass through zero during a motion.
+/// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound. The factorisation divides by
+/// the coefficient of the last row, which may pass through zero during a motion.
 
 #include <algorithm>
 #include <limits>
@@ -306,7 +306,7 @@ template <class Solver>
     forward.hold(system, x.q, x.v, x.t);
   };
   space.keep_dependent();
-  choose();  // this factorisation has the correct rank; before it, small pivots may have caused too many dropped rows
+  choose();  // the new factorisation has the correct rank; the old one may have dropped too many rows for small pivots
   if (!space.find()) return true;
   space.keep_dependent();
   space.keep_permanent();
@@ -314,7 +314,8 @@ template <class Solver>
   Sequence<Index> dropped(forward.redundant_rows().begin(), forward.redundant_rows().end());
   sort_once(dropped);
   auto const left_out = forward.left_out();
-  // An equation that shares a node with a singular body is not dropped. The choice is then void.
+  // The solver keeps a chosen equation that shares a node of its factorisation with a singular body. The choice is then
+  // void.
   if (!std::includes(dropped.begin(), dropped.end(), left_out.begin(), left_out.end())) forward.mark_redundant({});
   return !std::equal(before.begin(), before.end(), forward.left_out().begin(), forward.left_out().end());
 }

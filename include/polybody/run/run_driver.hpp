@@ -52,7 +52,8 @@ class RunDriver {
     all.append(options_->breakpoints.begin(), options_->breakpoints.end());
     plan_ = StepPlan(start, options_->end_time, options_->step, std::move(all));
   }
-  /// Passes the breakpoints at the start time t. Returns t, or the breakpoint that differs from t by round-off only.
+  /// Passes the breakpoints at the start time t. Returns t, or a breakpoint or end time that follows t by round-off
+  /// only.
   double pass(double t) { return plan_.pass(t); }
   /// Evaluates the events at the start x of the run.
   template <class Run>
@@ -161,7 +162,7 @@ class RunDriver {
     run.on_done(s);
   }
 
-  /// Ends the step to x at its first event. Returns true if there is one, or if an event value is held at zero.
+  /// Ends the step to x at its first event. Returns true if an event occurred, or if an event value is held at zero.
   template <class Run>
   bool meet_events(State& x, Run& run) {
     saved_.searched = true;

@@ -13,7 +13,7 @@ namespace polybody {
 struct RunSystems {
   std::unique_ptr<System> stepped;  ///< integrated system; a pointer, because workspaces refer to it
   std::unique_ptr<System> full;     ///< full system; null if policies eliminate nothing
-  SystemSource questions = {};      ///< for questions about the states of the run
+  SystemSource questions = {};      ///< makes full systems, for evaluations of the states of the run
 };
 
 /// Iterator over the states of a simulation, one for each step: `for (auto const& now : simulate(…))`.
@@ -34,7 +34,7 @@ class RunIterator {
     return *this;
   }
   void operator++(int) { ++*this; }                      ///< takes a step
-  bool operator==(Sentinel) const { return finished_; }  ///< true if the run is done
+  bool operator==(Sentinel) const { return finished_; }  ///< true past the last state of the run
 
  private:
   Run* run_;

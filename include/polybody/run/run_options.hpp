@@ -120,9 +120,9 @@ struct RunReport : RunCounts {
   /// the load over the reactions is not.
   std::vector<std::string> redundant = {};
   /// Warnings as text. At the start: a singular configuration whose velocities do not determine a branch of the motion,
-  /// and a step beyond the limit of an explicit integrator. In a step: a singular configuration at which the velocities
-  /// jumped to another branch, and axial forces near buckling that a beam neglects. At the end: energy that no work
-  /// explains.
+  /// and a step beyond the stability limit of an explicit integrator. In a step: a singular configuration at which the
+  /// velocities jumped to another branch, and axial forces near buckling that a beam neglects. At the end: energy that
+  /// no work explains.
   std::vector<std::string> warnings = {};
 
   /// Adds the warning `sentence` if it is not empty.
@@ -133,8 +133,8 @@ struct RunReport : RunCounts {
   bool warns(char const* words) const {
     return std::any_of(warnings.begin(), warnings.end(), [&](std::string const& w) { return w.starts_with(words); });
   }
-  /// Text for the message of an exception that ends the run: number of halved steps, and the warnings. Empty if there
-  /// are none.
+  /// Text for the message of an exception that ends the run: number of halved steps, and the warnings. Empty without
+  /// halved steps and warnings.
   [[gnu::cold]] std::string warned() const {
     std::string all;
     if (halved > 0) all = sentence_of({halved, halved == 1 ? " step" : " steps", " of the run had to be halved."});
@@ -154,7 +154,7 @@ struct RunReport : RunCounts {
     if (found.worst > 0.4 * found.scale)
       add_warning(sentence_of({"The work of a force over one step is uncertain by ", found.worst,
                                " J, more than 40 % of the exchanged energy (", found.scale,
-                               " J): the steps do not resolve this force. Repeat the run with half the step."}));
+                               " J). The steps do not resolve this force. Repeat the run with half the step."}));
     else if (std::abs(found.energy) > limit * found.scale + found.doubt)
       add_warning(
           sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",

@@ -14,7 +14,7 @@ namespace polybody {
 /// order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
   Index coordinates = 0, velocities = 0, rows = 0;  ///< sizes of a step, after elimination
-  Index eliminated_equations = 0;                   ///< number of equations whose multipliers a step estimates
+  Index eliminated_equations = 0;                   ///< eliminated equations with estimated multipliers in the state
   std::uint64_t names = 0;                          ///< checksum of the names
 
   bool operator==(ModelIdentity const&) const = default;  ///< true if counts and names are equal
@@ -50,7 +50,7 @@ struct RunSnapshot {
     polybody::require_finite(state.v, "resume: the velocities of the snapshot");
     polybody::require_finite(state.a, "resume: the accelerations of the snapshot");
     polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
-    polybody::require_finite(state.history, "resume: the integrator's memory in the snapshot");
+    polybody::require_finite(state.history, "resume: the integrator history of the snapshot");
   }
   /// \throws InvalidInput unless the snapshot has this model, integrator (with the name `by`) and number of events.
   template <class = void>

@@ -8,8 +8,8 @@
 
 namespace polybody {
 
-/// Selects the first state at or after each multiple of an interval, counted from the start; selects every state if the
-/// interval is zero.
+/// Selects the first state at or after each multiple of an interval, counted from the start. If the interval is zero,
+/// every state is selected.
 class RunSampling {
  public:
   /// \param start initial time [s] \param interval sampling interval [s]

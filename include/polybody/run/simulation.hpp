@@ -44,7 +44,8 @@ class Simulation {
   bool done() const { return driver_.done(stepped()); }  ///< true at the end of the run
 
   /// Takes a step to the next grid point, or to an earlier breakpoint or event. After an exception the state is
-  /// unchanged. \throws InvalidInput if the model has changed since the construction of the run.
+  /// unchanged. \throws InvalidInput if the model has changed since the construction of the run; the exceptions of a
+  /// step (`simulate`).
   void advance() { advance(true); }
 
   using Iterator = RunIterator<Simulation>;      ///< takes a step at each increment
@@ -106,8 +107,8 @@ class Simulation {
   }
   State& stepped() { return eliminates() ? reduced_ : *x_; }
   State const& stepped() const { return eliminates() ? reduced_ : *x_; }
-  /// Computes the user's state from the reduced state, in `seen_`. \throws NonFiniteValue if a force is not finite in
-  /// the computation of reactions. \param seen true if the evaluation of events has already computed `seen_`
+  /// Stores the user's state in `seen_`, computed from the reduced state. \throws NonFiniteValue if a force is not
+  /// finite in the computation of reactions. \param seen true if the evaluation of events has already computed `seen_`
   void make_full_state(bool seen) {
     if (!seen) expand(*system_, reduced_, seen_, scratch_);
     require_finite_reactions(*system_, seen_);
@@ -118,14 +119,15 @@ class Simulation {
 
   /// Reduced initial state: projects the velocities, and makes the checks that require the full model.
   [[gnu::cold]] void reduced_start();
-  /// Warns of an initial state at a branching point, and of a step that is too long for compliant joints.
+  /// Warns of a singular initial configuration, and of a step that is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
     report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, driver_.step_length()));
   }
 
-  /// After a start, breakpoint or event: projects the velocities onto the constraint equations, then computes
-  /// consistent accelerations. The integrator may look ahead to the end of the next step, but not across a breakpoint.
+  /// Projects the velocities onto the constraint equations, then computes consistent accelerations, after a start,
+  /// breakpoint or event. The start of the integrator may evaluate states up to the end of the next step, but none
+  /// beyond a breakpoint.
   [[gnu::cold]] void restart(bool first = false);
 
   // operations of `RunDriver`
@@ -165,7 +167,7 @@ class Simulation {
     if (!s.met && (done() || s.restarts)) settle(s.report.halved);
     if (s.restarts) restart();
   }
-  /// Multipliers of minimum norm, axial forces, the user's state and progress.
+  /// Updates minimum-norm multipliers, axial forces and the user's state, and reports progress.
   void on_done(RunStep const& s);
   [[gnu::cold]] void on_failure() {
     if (undo_.has_user) *x_ = undo_.user;
@@ -175,7 +177,7 @@ class Simulation {
 
   std::unique_ptr<System> system_, full_;  // workspaces contain references to them
   State* x_;
-  Probe probe_;  // a separate system, so that questions do not change the run
+  Probe probe_;  // a separate system, so that evaluations of states do not change the run
   ObservedState now_;
   State reduced_, seen_;  // reduced and full state, if policies eliminate unknowns
   MethodOf<I> method_;
@@ -310,9 +312,10 @@ RunReport const& Simulation<I, Solver>::run() & {
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::reduced_start() {
   if (options_.minimum_norm)
-    throw InvalidInput("run.minimum_norm", {ErrorObject{"simulate"},
-                                            ": minimum_norm needs a model in which no constraint equation is "
-                                            "eliminated. Use minimum_norm_multipliers for single states."});
+    throw InvalidInput("run.minimum_norm",
+                       {ErrorObject{"simulate"},
+                        ": the option minimum_norm requires a model in which no constraint "
+                        "equation is eliminated. For single states, call minimum_norm_multipliers."});
   State start = *x_;
   ForwardDynamics<Solver> forward(full());
   forward.project_velocities(full(), start.q, start.v, start.t);

@@ -17,7 +17,8 @@ inline Event slider_end_event(std::string const& name, Slider slider, Index i, d
 }
 }  // namespace detail
 
-/// Position of a slider along the axis of its body [m]. \throws InvalidInput for a slider that the body does not have.
+/// Position of a slider: arc length along the axis of its body [m]. \throws InvalidInput for a slider that the body
+/// does not have.
 template <class M, class B>
 double slider_position(M const& model, State const& x, BodyHandle<WithSliders<B>> const& handle, Slider slider = {}) {
   auto const& e = model.entry(handle);

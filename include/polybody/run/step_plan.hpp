@@ -16,8 +16,8 @@ struct StepRow {
   double count = 0.0;                ///< k, count of steps
 
   double end() const { return start + count * length; }  ///< time at which the last step ended [s]
-  /// End of a step from t with the length `taken` [s]. A step of another length, or from another time, begins a new
-  /// row.
+  /// End of a step from t with the length `taken` [s]. A step of another length, or from another time, restarts the
+  /// count.
   double after(double t, double taken) {
     if (t != end() || taken != length) *this = {t, taken, 0.0};
     count += 1.0;
@@ -42,9 +42,8 @@ class StepPlan {
     sort_once(breakpoints_);
   }
 
-  /// Passes the breakpoints up to t, and those that differ from t by round-off only (0.3 and 0.1 + 0.2 are equal).
-  /// Returns t. If the last passed breakpoint or the end time differs from t by round-off only, returns that time
-  /// instead.
+  /// Passes the breakpoints up to t, with a tolerance of 1e-9 of a step plus round-off (0.3 and 0.1 + 0.2 are equal).
+  /// Returns t, or a later breakpoint or end time within this tolerance.
   double pass(double t) {
     double const remainder_step = 1e-9 * step_ + rounding(t);
     while (next_ < breakpoints_.size() && breakpoints_[next_] <= t + remainder_step)
@@ -63,7 +62,7 @@ class StepPlan {
     // equations that are divided by the square of a tiny step.
     bool const lands = 1.01 * h >= left;
     if (lands && breakpoint) return {target, step_to_just_before(target, t), true, true};
-    // A last step that differs from h by round-off only has the length h, as in a run with a later end.
+    // A last step that differs from h by round-off only has the length h, as in a run with a later end time.
     return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 

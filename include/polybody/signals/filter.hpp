@@ -30,15 +30,16 @@ double equal_step(std::span<double const> times, std::string const& who) {
   std::nth_element(sorted.begin(), middle, sorted.end());
   for (std::size_t i = 0; i < intervals.size(); ++i)
     if (std::abs(intervals[i] - *middle) > 1e-3 * *middle)
-      throw InvalidInput("samples.spacing",
-                         {ErrorObject{who}, ": the samples at ", times[i], " s and ", times[i + 1], " s are ",
-                          ErrorValue{intervals[i]}, " s apart, but the median interval is ", *middle,
-                          " s. Make the samples equally spaced by resampled, or close the gap."});
+      throw InvalidInput(
+          "samples.spacing",
+          {ErrorObject{who}, ": the samples at ", times[i], " s and ", times[i + 1], " s are ",
+           ErrorValue{intervals[i]}, " s apart, but the median interval is ", *middle,
+           " s. Resample them by resampled(times, values, step) of signals/filter.hpp, or record in equal steps."});
   return (times.back() - times.front()) / double(intervals.size());
 }
 
-using HalfSpectrum =
-    std::vector<std::complex<double>>;  ///< coefficients of frequencies 0, 1/T, … up to Nyquist's, with the period T
+using HalfSpectrum = std::vector<std::complex<double>>;  ///< coefficients at the frequencies 0, 1/T, … up to the
+                                                         ///< Nyquist frequency, with the period T
 
 template <class = void>
 HalfSpectrum fourier_terms(std::vector<double> const& values) {
@@ -51,11 +52,12 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 
 }  // namespace detail
 
-/// Resamples `values` at t₀, t₀ + step, … by linear interpolation. Frequencies above half of the new sampling rate
-/// alias; histories with such frequencies require a smaller step.
+/// Resamples `values` at t₀, t₀ + step, … by linear interpolation, with the first of the `times` t₀. Frequencies above
+/// half of the new sampling rate alias; histories with such frequencies require a smaller step.
 /// \param step time step of the result [s] \param largest_gap largest interval between given samples that is
 /// interpolated [s]; 0: 1.5 steps
-/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, and for larger gaps.
+/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, for larger gaps, and for
+/// a step that is not positive.
 template <class = void>
 std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
                               double largest_gap = 0.0) {
@@ -67,7 +69,7 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
     if (times[i] - times[i - 1] > gap)
       throw InvalidInput("samples.gap", {ErrorObject{"resampled"}, ": there is no sample between ", times[i - 1],
                                          " s and ", times[i], " s, a gap of more than ", ErrorValue{gap},
-                                         " s. Give a largest_gap up to which samples are interpolated."});
+                                         " s. Set largest_gap to the longest interval that may be interpolated."});
   std::size_t const count = std::size_t((times.back() - times.front()) / step + 1e-6) + 1;
   std::vector<double> out;
   std::size_t after = 1;
@@ -83,8 +85,8 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
 /// Low-pass filter that preserves frequencies up to the cut-off f_c in amplitude and phase, and removes higher
 /// frequencies. The filter multiplies the Fourier sum of the whole record by the transfer function H,
 ///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T.
-/// H is 1 up to the cut-off and 0 above it. With a roll-off w, H decreases from f_c to f_c + w as
-/// ½(1 + cos π(f − f_c)/w).
+/// c_k are the Fourier coefficients, and T is the period. H is 1 up to the cut-off and 0 above it. With a roll-off w, H
+/// decreases from f_c to f_c + w as ½(1 + cos π(f − f_c)/w).
 ///
 /// The Fourier sum is periodic; its period is the length of the record. If the ends of the record differ, a sharp
 /// cut-off causes ringing at the ends. With `mirrored`, one period consists of the record and its mirror image: a
@@ -102,7 +104,7 @@ struct LowPass {
 };
 
 /// Returns the history `values` without frequencies above the cut-off. The computing time increases with the largest
-/// prime factor of the number of samples. Long records should have a number of samples with small factors.
+/// prime factor of the number of samples. Long records should have a number of samples with small prime factors.
 /// \param times equally spaced [s]
 /// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above the Nyquist
 /// frequency, and for a cut-off whose period is longer than the record.
@@ -114,7 +116,7 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
   double const step = detail::equal_step(times, "low_pass"), nyquist = 0.5 / step;
   if (filter.cut_off > nyquist * (1.0 + 1e-9))
     throw InvalidInput("filter.cut_off", {ErrorObject{"low_pass"}, ": the cut-off of ", ErrorValue{filter.cut_off},
-                                          " Hz is above Nyquist's frequency of ", nyquist, " Hz for samples ", step,
+                                          " Hz is above the Nyquist frequency of ", nyquist, " Hz for samples ", step,
                                           " s apart. Record in smaller steps or lower the cut-off."});
   if (filter.cut_off * step * double(values.size()) < 1.0)
     throw InvalidInput("filter.cut_off",
@@ -159,9 +161,10 @@ struct Spectrum {
   std::vector<double> amplitudes;   ///< amplitudes a_k, one per frequency [unit of the samples]
 };
 
-/// Amplitude spectrum of equally spaced samples `values` at `times` [s]. a₀ is |mean|; the other amplitudes are
-/// computed without the mean, with a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the
-/// Nyquist frequency). \throws InvalidInput for samples that are too few, not finite or not equally spaced.
+/// Amplitude spectrum of equally spaced samples `values` at `times` [s]. a₀ is |mean|. The other amplitudes are those
+/// of the values x_i without the mean, weighted with a window w: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without
+/// the factor 2 at the Nyquist frequency). \throws InvalidInput for samples that are too few, not finite or not equally
+/// spaced.
 template <SpectralWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

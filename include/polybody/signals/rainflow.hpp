@@ -96,7 +96,7 @@ struct Basquin {
   Required<double> exponent;  ///< m [1]
   double limit = 0.0;         ///< ranges up to this limit cause no damage [N/m²]
 
-  /// Number N of cycles of the range `of_range` until failure; infinite up to the limit.
+  /// Number N of cycles of the range `of_range` [N/m²] until failure; infinite for ranges up to `limit`.
   double life(double of_range) const {
     return of_range > limit ? cycles * std::pow(range / of_range, exponent) : std::numeric_limits<double>::infinity();
   }

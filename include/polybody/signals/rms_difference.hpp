@@ -8,8 +8,8 @@
 
 namespace polybody {
 
-/// Relative root mean square difference (∫(a − b)² / ∫b²)^½ of the histories a and b, over the samples of b in a
-/// range of time. Vectors are added component by component:
+/// Relative root mean square difference (Σ(a − b)² / Σb²)^½ of the histories a and b. The sums are over the samples of
+/// b in a range of time; samples of b outside the times of a are skipped. Vectors are added component by component:
 ///   RmsDifference d(1.0, 10.0);
 ///   d.add({ta, ax}, {tb, bx});
 ///   d.add({ta, ay}, {tb, by});

@@ -46,8 +46,8 @@ class BlockFactor {
   BlockFactor() = default;
   BlockFactor(BlockFactor const&) = delete;  // slots_ points into u_ and l_
   BlockFactor& operator=(BlockFactor const&) = delete;
-  BlockFactor(BlockFactor&&) = default;             ///< `slots()` remain valid
-  BlockFactor& operator=(BlockFactor&&) = default;  ///< `slots()` remain valid
+  BlockFactor(BlockFactor&&) = default;             ///< the addresses of `slots()` remain valid
+  BlockFactor& operator=(BlockFactor&&) = default;  ///< the addresses of `slots()` remain valid
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;

@@ -156,8 +156,8 @@ int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, doubl
   return -1;
 }
 
-/// Eliminates a node with partial pivoting among its rows. A pivot must be above `threshold` times the largest entry of
-/// its column.
+/// Eliminates a node with partial pivoting among its rows. A pivot must be above `threshold` · max(c, 1e-3 `threshold`
+/// m), with the largest entry c of its column and the largest entry m of the node.
 inline int eliminate_pivoted(NodeStorage const& n, bool symmetric, double threshold, double const* scale, int* swaps) {
   *n.direct = 0;
   int const stride = n.stride();

@@ -13,7 +13,7 @@
 namespace polybody::detail {
 
 /// Finds bodies and joints in the block pattern of a matrix. A segment is a range of unknowns without a block boundary
-/// inside. It belongs to a joint if the matrix has no block on its diagonal.
+/// inside. A segment belongs to a joint if the matrix has no block on the diagonal of the segment.
 class BlockPattern {
  public:
   static constexpr Index largest_segment = 6;

@@ -22,9 +22,9 @@ namespace polybody {
 template <LinearSolver Solver>
 class ConstantBlockCache {
  public:
-  /// Declares unknowns constant. Call it before `analyse`. Returns the number of unknowns in constant parts, or zero if
-  /// there are not parts of both kinds. \param constant for each unknown: true if the blocks in its row and column are
-  /// constant
+  /// Declares unknowns constant. Call it before `analyse`. Returns the number of unknowns in constant parts, or zero
+  /// unless the matrix has constant parts and other parts. \param constant for each unknown: true if the blocks in its
+  /// row and column are constant
   /// \param blocks blocks of the matrix
   Index keep(Sequence<bool> const& constant, std::span<Block const> blocks) {
     Index const size = Index(constant.size());
@@ -126,8 +126,8 @@ class ConstantBlockCache {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// Computes the null vectors of the dropped equations for equations of these `sizes`: `BlockFactor::null_vectors`.
-  /// Empty if `Solver` does not provide null vectors.
+  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). Empty if `Solver` does not
+  /// provide null vectors. \param sizes sizes of all equations
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
     if constexpr (requires { rest_.null_vectors(sizes); }) {
       for (std::size_t i = 0; i < place_.size(); ++i)

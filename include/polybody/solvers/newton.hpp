@@ -328,9 +328,9 @@ struct NewtonSolve {
 /// factorisation the first condition also requires that no correction of the solve grew. After a large correction θ is
 /// small for any iterate and does not prove convergence. Corrections of one factorisation are combined
 /// (`AndersonAcceleration`), except in full Newton and without `predictive_stop`. θ is then the contraction rate of the
-/// factorisation alone. In the first condition, ‖Δ‖ is then replaced by the residual of the fit. After the first two
-/// corrections it is replaced by the geometric mean of ‖Δ‖ and this residual. The solve fails after `max_growths`
-/// growing corrections of new factorisations.
+/// factorisation alone. In the first condition, the residual of the fit then replaces ‖Δ‖. At the second correction,
+/// the geometric mean of ‖Δ‖ and this residual replaces ‖Δ‖ instead. The solve fails after `max_growths` growing
+/// corrections of new factorisations.
 ///
 /// Full Newton: in stiff directions the rate θ alternates (0.01, 0.8, 1e-4, …: bending, then the stretch due to
 /// bending), so that one rate does not predict the next correction. Full Newton stops if ‖Δ‖ ≤ 1. A correction grows if

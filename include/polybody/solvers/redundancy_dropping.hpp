@@ -18,11 +18,11 @@ concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
 };
 
 /// Linear solver for [A, Gᵀ; G, 0] that uses `Solver` and also accepts redundant constraint equations. It drops
-/// redundant equations, so that their multipliers are zero. `BlockSolver` determines the redundant equations. It
-/// factorises the matrix if `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver` provides it), and in
-/// every later factorisation as long as equations are dropped. `Solver` then factorises the matrix, in which a one on
-/// the diagonal replaces the row and the column of each dropped equation. If this fails (`EigenLdlt` for thin rods,
-/// whose M is singular), `BlockSolver` solves the equations. The wrapper stores a copy of the blocks.
+/// redundant equations, so that their multipliers are zero. `BlockSolver` determines the redundant equations. This
+/// solver factorises the matrix if `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver` provides it),
+/// and in every later factorisation as long as equations are dropped. `Solver` then factorises the matrix, in which a
+/// one on the diagonal replaces the row and the column of each dropped equation. If this fails (`EigenLdlt` for thin
+/// rods, whose M is singular), `BlockSolver` solves the equations. The wrapper stores a copy of the blocks.
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:
@@ -82,7 +82,8 @@ class RedundancyDropping {
   }
   /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Computes the null vectors of the dropped equations for equations of these `sizes`: `BlockFactor::null_vectors`.
+  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). \param sizes sizes of all
+  /// equations
   Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const { return judge_.null_vectors(sizes); }
 
  private:

@@ -13,7 +13,7 @@
 
 namespace polybody {
 
-/// True if weight and inertia are the only forces: no force element, compliant joint or force of a body acts.
+/// True if gravity is the only applied force: no force element, compliant joint or force of a body acts.
 template <class = void>
 [[gnu::cold]] bool under_gravity_only(System const& s) {
   if (!s.step_coordinates().reduced->moves_by_newton_euler || !s.data().actions.empty()) return false;
@@ -39,7 +39,8 @@ class LinearEquations {
   virtual std::size_t reorderings() const = 0;
   /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
   virtual void limit_reorderings(std::size_t count) noexcept = 0;
-  /// Redundant equations of the last factorisation; empty for solvers that do not list them.
+  /// Indices of the equations that the last factorisation dropped as redundant; empty for solvers that do not list
+  /// them.
   virtual std::span<Index const> dropped() const = 0;
   /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
   /// articulated-body algorithm, and for solvers without `mark_redundant`.
@@ -47,8 +48,9 @@ class LinearEquations {
   /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
   /// joints: see `BlockFactor::is_doubtful`.
   virtual bool is_doubtful() const = 0;
-  /// Computes the null vectors of the dropped equations for equations of these `sizes`, in the unknowns of the linear
-  /// equations (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors.
+  /// Computes the null vectors of the dropped equations, in the unknowns of the linear equations
+  /// (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors. \param sizes sizes of all
+  /// equations
   virtual Sequence<IndexMap<double>> null_vectors(VecX const& sizes) = 0;
 };
 
@@ -126,7 +128,8 @@ class TangentSolver final : public LinearEquations {
   }
 
   /// True if the last factorisation dropped more equations than an earlier one. The system is then in a singular
-  /// configuration. In other states these equations are independent, and the factorisation would not enforce them.
+  /// configuration. In other states the additional equations are independent, and the factorisation would not enforce
+  /// them.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
   [[gnu::cold]] void mark_redundant(std::span<Index const> equations) override {

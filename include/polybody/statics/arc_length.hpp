@@ -195,7 +195,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
   return path;
 }
 
-/// Overload for a model.
+/// Path of static equilibria of `model` from `start`, with the conditions and exceptions of the overload for `System`.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

@@ -67,12 +67,12 @@ template <class Solver>
   return true;
 }
 
-/// Damped motion from `start` into equilibrium, for states from which Newton's method does not converge, such as
-/// slack cables. It follows the gradient flow
+/// Damped motion from `start` into equilibrium, for states from which Newton's method does not converge, such as slack
+/// cables. The damped motion follows the gradient flow
 ///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
-/// by the implicit Euler method. The load increases to the full load. The steps τ grow as long as they converge
-/// (pseudo-transient continuation [Kelley & Keyes 1998]). The motion ends in a stable equilibrium, because unstable
-/// equilibria repel it. Returns true if the motion ends in equilibrium.
+/// by the implicit Euler method. The fraction s of the load path increases to one. The steps τ grow as long as they
+/// converge (pseudo-transient continuation [Kelley & Keyes 1998]). The motion ends in a stable equilibrium, because
+/// unstable equilibria repel it. Returns true if the motion ends in equilibrium.
 template <class Solver>
 [[gnu::cold]] bool relax(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                          EquilibriumReport& report) {
@@ -128,8 +128,8 @@ template <class Solver>
   return report.relaxed = reached;
 }
 
-/// Counts the negative pivots of the stiffness in the present state. Adds their number to the report, with a warning if
-/// there are any.
+/// Adds the number of negative pivots of the stiffness in the present state to the report, with a warning if there are
+/// any. The number is −1 for a model with first-order states.
 template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;
@@ -342,7 +342,8 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   return report;
 }
 
-/// Overload for a model. Joints whose policies eliminate unknowns are treated as constraint equations here.
+/// Moves state x of `model` into static equilibrium, with the method and exceptions of the overload for `System`.
+/// Joints whose policies eliminate unknowns are treated as constraint equations.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
   System system(model, with < Capabilities::implicit_step | Capabilities::rigid_velocities >);

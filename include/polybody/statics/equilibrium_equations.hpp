@@ -153,7 +153,7 @@ struct EquilibriumPath {
   State& trial;
   double tolerance;
   bool takes_least = false;  ///< true: corrections are minimum-norm solutions by `least`
-  /// A load step fails if the determinant of the tangent changes its sign between iterates. Beyond a limit point
+  /// True: a load step fails if the determinant of the tangent changes its sign between iterates. Beyond a limit point,
   /// Newton's method may otherwise converge to another branch.
   bool refuses_crossing = false;
   bool crosses = false;  ///< true: the determinant has changed its sign in this load step
@@ -284,8 +284,8 @@ struct EquilibriumPath {
     throw SingularMatrix(
         "equilibrium.singular",
         {"equilibrium: the stiffness is singular", place(), ", first at ", ErrorObject{system.name_of(i)},
-         ": no stiffness resists this motion: ", name_of_motion(system, least.motion(k), i),
-         ". The loads excite it. Fix every body, or pass a limit point with equilibrium_path."});
+         ". No stiffness resists this motion: ", name_of_motion(system, least.motion(k), i),
+         ". The loads excite this motion. Fix every body, or pass a limit point with equilibrium_path."});
   }
   /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {
@@ -297,8 +297,9 @@ struct EquilibriumPath {
         throw InconsistentInitialConditions(
             "constraints.contradiction",
             {"equilibrium: ", ErrorObject{system.name_of(i)}, " is violated by ", ErrorValue{std::abs(open[i - nv])},
-             ", because its constraint equations contradict those of other joints. Remove one of these joints, make "
-             "their dimensions and time functions agree, or give one a compliant policy such as Penalty."});
+             " (m or rad), because its constraint equations contradict those of other joints. Remove one of these "
+             "joints, make their dimensions and time functions agree, or give one a compliant policy such as "
+             "Penalty."});
   }
   std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
   /// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure according to `result`.
@@ -309,7 +310,7 @@ struct EquilibriumPath {
                                                     ". Fix every body, or pass a limit point with equilibrium_path."});
     if (result == NewtonResult::not_finite)
       throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at,
-                                                      ". Check the forces and the start."});
+                                                      ". Check the forces and the initial state."});
     throw NewtonConvergenceFailure(
         "equilibrium.not_converged",
         {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,

@@ -174,9 +174,9 @@ double largest_load(System const& system, VecX const& lambda) {
 }
 }  // namespace detail
 
-/// Minimum-norm solution of singular equations of statics A y = b. A is singular because of redundant constraints, or
-/// of free motions, which have no stiffness. A unit spring is added to as many unknowns as the rank deficiency of A
-/// [Farhat & Géradin 1998]. The columns of P are the unit vectors of these unknowns:
+/// Minimum-norm solution y = (x, μ) of singular equations of statics A y = b. A is singular because of redundant
+/// constraints, or of free motions, which have no stiffness. A unit spring is added to as many unknowns as the rank
+/// deficiency of A [Farhat & Géradin 1998]. The columns of P are the unit vectors of these unknowns:
 ///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
 /// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the null space
 /// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a solution,

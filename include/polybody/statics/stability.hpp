@@ -29,7 +29,7 @@ class SymmetricPivots {
 
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Computes the factors; false if L would have more than `most_entries`.
+  /// Computes the factors. Returns false if L would have more than `most_entries` entries.
   template <class = void>  // compiled where it is used
   bool factor(Matrix const& r) {
     size_ = r.cols();

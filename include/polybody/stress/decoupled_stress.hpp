@@ -124,7 +124,7 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
 class DecoupledStress {
  public:
-  /// Quasi-static stress from K e = Q at each sample. It is valid if the loads change slowly compared with the
+  /// Quasi-static stress from K e = Q at each sample. The result is valid if the loads change slowly compared with the
   /// structure's vibrations. The stress is independent of `frame`, because recorded loads are balanced. The
   /// displacements are relative to `frame`.
   /// \throws InvalidInput like `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
@@ -133,7 +133,7 @@ class DecoupledStress {
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
   /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads`, for shapes
-  /// that do not fit the structure or move a coordinate that the frame fixes, and for fewer substeps than one.
+  /// that do not fit the structure or move a coordinate that the frame fixes, and for less than one substep.
   /// Exceptions of the integrator are passed on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
@@ -146,9 +146,9 @@ class DecoupledStress {
   MatX const& displacements() const { return e_; }
 
   /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar` (see sections.hpp),
-  /// with damping forces. If a load acts at this section, the values just beyond the load are returned. At the end of
-  /// the bar, the values just before the load are returned. \throws InvalidInput outside the bar, and for a structure
-  /// without bars.
+  /// including damping forces. If a load acts at this section, the values just beyond the load are returned. At the end
+  /// of the bar, the values just before the load are returned. \throws InvalidInput outside the bar, and for a
+  /// structure without bars.
   template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
@@ -186,8 +186,8 @@ class DecoupledStress {
     return out;
   }
 
-  /// Axial strain of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y. With
-  /// damping this is the static strain under `section_forces`. \throws InvalidInput like `section_forces`.
+  /// Axial strain [1] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y.
+  /// With damping this is the static strain under `section_forces`. \throws InvalidInput like `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
@@ -197,7 +197,7 @@ class DecoupledStress {
     return out;
   }
   /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, with the section and material
-  /// of `of`. \throws InvalidInput like `section_forces`, and for a bar given by constants.
+  /// of the bar `of`. \throws InvalidInput like `section_forces`, and for a bar given by constants.
   template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
@@ -205,7 +205,7 @@ class DecoupledStress {
     return out;
   }
   /// Axial and shear stress at the point (y, z) [m] of the section at arc length s [m] of bar number `bar`, with the
-  /// section and material of `of`. The result yields the principal stresses and the von Mises stress. \throws
+  /// section and material of the bar `of`. The result yields the principal stresses and the von Mises stress. \throws
   /// InvalidInput like `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
@@ -281,7 +281,7 @@ class DecoupledStress {
     return {loads_.motion(sample), of(e_), of(vibration_.deformed), of(vibration_.rate), of(vibration_.acceleration)};
   }
 
-  /// Acceleration less gravity at a point of the axis, and its derivatives along y and z of the section.
+  /// Acceleration minus gravity at a point of the axis, and its derivatives along y and z of the section.
   template <class = void>
   std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
     Mat3 const& B = x.motion.B;

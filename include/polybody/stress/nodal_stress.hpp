@@ -42,7 +42,7 @@ class NodalStress {
 
   /// Constructs the stress from a `matrix` with six rows for each of the spots, in their order, and one column per
   /// coordinate (6k×N) [Pa/m].
-  /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two spots with one
+  /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two spots with the same
   /// name.
   template <class = void>  // compiled where it is used
   NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
@@ -52,18 +52,19 @@ class NodalStress {
                          {ErrorObject{"NodalStress"}, ": at least one node is needed, but the list is empty."});
     if (matrix_.rows() != 6 * k)
       throw InvalidInput("nodal_stress.size",
-                         {ErrorObject{"NodalStress"}, ": its matrix has ", ErrorValue{matrix_.rows()}, " rows, but ", k,
+                         {ErrorObject{"NodalStress"}, ": the matrix has ", ErrorValue{matrix_.rows()}, " rows, but ", k,
                           " nodes need ", 6 * k, ", six stresses per node."});
     for (Index row = 0; row < matrix_.rows(); ++row)
       for (Matrix::InnerIterator it(matrix_, row); it; ++it)
         if (!std::isfinite(it.value()))
-          throw InvalidInput("value.not_finite",
-                             {ErrorObject{"NodalStress"}, ": row ", row, ", column ", it.col(), " of its matrix is ",
-                              ErrorValue{it.value()}, ". Give finite numbers, in Pa/m."});
+          throw InvalidInput(
+              "value.not_finite",
+              {ErrorObject{"NodalStress"}, ": row ", row, ", column ", it.col(), " of the matrix is ",
+               ErrorValue{it.value()}, ". Rows and columns are counted from 0. Give finite numbers, in Pa/m."});
     for (auto spot = spots_.begin(); spot != spots_.end(); ++spot)
       if (spot != find(spot->name))
         throw InvalidInput("nodal_stress.nodes", {ErrorObject{"NodalStress"}, ": duplicate node name \"", spot->name,
-                                                  "\". Give each node another name."});
+                                                  "\". Give each node a different name."});
   }
 
   /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line
@@ -139,7 +140,7 @@ class NodalStress {
         lines.fail(sentence_of({"node ", node, " does not exist; the structure has nodes 0 to ", nodes - 1}));
       for (Spot const& other : spots)
         if (other.name == name.text)
-          lines.fail("duplicate node name \"" + name.text + "\"; give each node another name");
+          lines.fail("duplicate node name \"" + name.text + "\"; give each node a different name");
       spots.push_back({node, name.text});
     }
     if (spots.empty()) lines.fail("the file names no nodes; write the number and the name of one node in each line");
@@ -157,14 +158,15 @@ class NodalStress {
     std::string known;
     for (Spot const& s : spots_) known += (known.empty() ? "\"" : ", \"") + s.name + '"';
     throw InvalidInput("nodal_stress.no_node", {"NodalStress: no node is called \"", ErrorObject{std::string(name)},
-                                                "\". There are ", known, "."});
+                                                "\". The named nodes are ", known, "."});
   }
   template <class = void>
   void require_rows(MatX const& x, char const* what) const {
     if (x.rows() != matrix_.cols())
-      throw InvalidInput("nodal_stress.size", {ErrorObject{"NodalStress"}, ": the ", what, " have ",
-                                               ErrorValue{x.rows()}, " rows, but its matrix has ", matrix_.cols(),
-                                               " columns. Give a row for each coordinate of the structure."});
+      throw InvalidInput("nodal_stress.size",
+                         {ErrorObject{"NodalStress"}, ": the ", what, " have ", ErrorValue{x.rows()},
+                          " rows, but the stress matrix has ", matrix_.cols(),
+                          " columns. Give a row for each coordinate of the structure."});
   }
 
   Matrix matrix_;  ///< (6k×N)

@@ -13,7 +13,7 @@ double curvature(M const& model, State const& x, Marker<B> const& marker) {
   Vec6 const e = section_strains(model, x, marker);
   return std::hypot(e[4], e[5]);
 }
-/// Axial strain of the fibre through the marker's point.
+/// Axial strain [1] of the fibre through the marker's point.
 template <class M, class B>
 double axial_strain(M const& model, State const& x, Marker<B> const& marker) {
   Vec2 const off = off_axis(marker.point);

@@ -25,23 +25,23 @@ struct StructureLoadOptions {
   double balance_tolerance = 1e-3;  ///< allowed sum of forces and of moments, relative to the sum of their magnitudes
   double patch = 0.0;  ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
   std::vector<LoadPatch> patches =
-      {};  ///< patches with given nodes, for loads at the points `at`, if nodes have no rotations
+      {};  ///< nodes that share the load at the point `at`; only for nodes without rotations
 };
 
 /// Loads of a recorded motion on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
 /// body's rigid motion [Wallin 2016, §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration
-/// less gravity
+/// minus gravity
 ///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~.
-/// A is the rotation matrix, r̈ the acceleration of the structure's origin, g gravity, and Ω the angular velocity. The
-/// linear structural problem has the right-hand side
+/// A is the rotation matrix, r̈ the acceleration of the structure's origin, g gravity, and Ω the angular velocity. x~ is
+/// the skew-symmetric matrix of x. The linear structural problem has the right-hand side
 ///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ.
-/// In B, the term Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, and Ω˙~ is the rotational part of m_fr. S and
-/// S_r are the matrices of Eq. 4.5.
+/// In Wallin 2016, the term Ω~ Ω~ of B is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, and Ω˙~ is the rotational part
+/// of m_fr. S and S_r are the matrices of Eq. 4.5.
 class StructureLoads {
  public:
   /// Motion of the structure at one sample, in the structure's axes.
   struct Motion {
-    Vec3 b = Vec3::Zero();      ///< acceleration of the origin less gravity [m/s²]
+    Vec3 b = Vec3::Zero();      ///< acceleration of the origin minus gravity [m/s²]
     Vec3 omega = Vec3::Zero();  ///< Ω, angular velocity [rad/s]
     Mat3 B = Mat3::Zero();      ///< Ω˙~ + Ω~ Ω~, gradient of the acceleration [1/s²]
     double size = 0.0;          ///< |r̈| + |g|, the size of the terms in b [m/s²]

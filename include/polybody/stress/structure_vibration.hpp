@@ -21,8 +21,9 @@ namespace polybody {
 struct Vibration {
   ReferenceConditions frame = ReferenceConditions::clamped();  ///< attachment of the frame
   MatX shapes = {};  ///< Φ (N×n), computed with `frame`; empty: all nodal coordinates
-  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal), and m_fr(q) of Ω˙ [Wallin
-  /// 2016, A.4]. Wallin 2016 neglects these terms. Geometric stiffening by axial forces is neglected in both cases.
+  /// true: includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal), and m_fr(q) of Ω˙
+  /// [Wallin 2016, A.4]. Wallin 2016 neglects these terms. Geometric stiffening by axial forces is neglected in both
+  /// cases.
   bool follows_deformation = false;
   double stiffness_damping = 0.0;  ///< τ [s]; a damping matrix τ K is added to that of the structure
   bool settled = true;  ///< true: starts at rest in the static deformation of the first loads; false: undeformed
@@ -116,7 +117,7 @@ void require_fitting_shapes(Structure const& s, Vibration const& how, std::strin
 }  // namespace detail
 
 /// Computes the vibration of a structure under `loads`, with the options `how`. \throws InvalidInput for shapes that do
-/// not fit the structure, move a coordinate that the frame fixes or have no stiffness, and for fewer substeps than one.
+/// not fit the structure, move a coordinate that the frame fixes or have no stiffness, and for less than one substep.
 /// Exceptions of the integrator are passed on.
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {

@@ -16,7 +16,7 @@ namespace polybody::detail {
 // 754; not under -ffast-math). The source writes each sum with a product as an fma, so the result does not depend on
 // the compiler.
 
-/// Logarithm ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).
+/// Logarithm ln x of a positive x = m·2ᵏ with √½ ≤ m < √2: ln x = k ln 2 + ln m with ln m = 2 artanh((m − 1)/(m + 1)).
 template <class = void>  // compiled where it is used
 double portable_log(double x) {
   int k = 0;
@@ -28,7 +28,7 @@ double portable_log(double x) {
   return std::fma(double(k), std::numbers::ln2, 2.0 * s * sum);
 }
 
-/// Exponential eˣ, by 2ᵏ eʳ with |r| ≤ ½ ln 2 and the series of eʳ.
+/// Exponential eˣ = 2ᵏ eʳ with an integer k, |r| ≤ ½ ln 2 and the power series of eʳ.
 template <class = void>
 double portable_exp(double x) {
   double const k = std::nearbyint(x / std::numbers::ln2);
@@ -42,7 +42,8 @@ double portable_exp(double x) {
 }
 
 /// Distribution function Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| + 1/(|x|
-/// + 2/(|x| + …))) in the tail [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]. φ is the `density` at x.
+/// + 2/(|x| + …))) in the tail [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]. φ is the `density` of the normal
+/// distribution at x.
 template <class = void>
 double normal_share(double x, double density) {
   if (x > -3.0) {
@@ -59,9 +60,9 @@ double normal_share(double x, double density) {
   return density / fraction;
 }
 
-/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. Newton's method is applied to ln Φ. This
-/// function is concave, so iterates that start left of the root remain left of the root. The initial value is left of
-/// the root because Φ(−t) ≤ ½ exp(−t²/2).
+/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. Newton's method solves ln Φ(x) = ln u. The
+/// function ln Φ is concave, so iterates that start left of the root remain left of the root. The initial value is left
+/// of the root because Φ(−t) ≤ ½ exp(−t²/2).
 template <class = void>
 double normal_quantile(double u) {
   if (u > 0.5) return -normal_quantile(1.0 - u);
@@ -92,12 +93,12 @@ double of_twelve_digits(double x) {
 namespace polybody {
 
 /// Equidistant values: `count` values from `first` to `last`. The intermediate values are rounded to twelve digits.
-/// \throws InvalidInput for fewer than two values, or for an end that is not finite.
+/// \throws InvalidInput for fewer than two values, or if `first` or `last` is not finite.
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {
   if (count < 2 || !std::isfinite(first) || !std::isfinite(last))
     throw InvalidInput("points.range", {"study: linear(", first, ", ", last, ", ", ErrorValue{count},
-                                        ") needs finite ends and at least two values."});
+                                        ") needs finite first and last values, and at least two values."});
   std::vector<double> values(count, first);
   for (std::size_t k = 1; k + 1 < count; ++k)
     values[k] = detail::of_twelve_digits(std::fma(double(k) / double(count - 1), last - first, first));
@@ -106,12 +107,12 @@ std::vector<double> linear(double first, double last, std::size_t count) {
 }
 
 /// Values with equal ratios (a geometric sequence): `count` values from `first` to `last`.
-/// \throws InvalidInput for an end that is not positive, and like `linear`.
+/// \throws InvalidInput if `first` or `last` is not positive, and like `linear`.
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))
-    throw InvalidInput("points.range",
-                       {"study: logarithmic(", ErrorValue{first}, ", ", last, ", ", count, ") needs positive ends."});
+    throw InvalidInput("points.range", {"study: logarithmic(", ErrorValue{first}, ", ", last, ", ", count,
+                                        ") needs positive first and last values."});
   std::vector<double> values = linear(first, last, count);  // checks the arguments; first and last value are kept
   double const from = detail::portable_log(first), to = detail::portable_log(last);
   for (std::size_t k = 1; k + 1 < count; ++k)

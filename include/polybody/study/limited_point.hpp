@@ -91,7 +91,7 @@ class PointProcess {
  private:
   [[noreturn, gnu::cold]] static void fail(char const* what, int why = errno) {
     throw Error("study.process", {"study: the operating system has no more ", ErrorObject{what},
-                                  " for a point with a time limit: ", std::strerror(why), "."});
+                                  " for a point with a time limit: ", std::strerror(why), ". Use fewer threads."});
   }
   /// Sends the answer and ends the process of the point, without the exit handlers of the program.
   [[noreturn]] static void send(int pipe, std::string const& text) {
@@ -108,8 +108,8 @@ class PointProcess {
   int pipe_ = -1;
 };
 
-/// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does not
-/// end within `limit` [s].
+/// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, ends without
+/// a result, or does not end within `limit` [s].
 /// \throws StudyUsageError if `found` throws it; Error with the message of another exception of `found`, or if the
 /// operating system cannot create another process.
 template <class F>

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
 /// Studies distributed over the ranks of MPI. `mpirun -np 4 program` starts a program on four ranks. Rank 0 distributes
-/// the points to free ranks, computes points itself, and writes the record. The record has the same format as that of a
-/// run with threads, so each kind of run can continue the record of the other. If a rank dies, mpirun ends all ranks,
-/// and the next run continues the record.
+/// the points to free ranks, computes points itself, and writes the record. The format of the record is that of a run
+/// with threads. A run over ranks can therefore continue the record of a run with threads, and vice versa. If a rank
+/// dies, mpirun ends all ranks, and the next run continues the record.
 ///
 /// Requires MPI (study/mpi_ranks.hpp explains the linking).
 
@@ -49,7 +49,7 @@ void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
   }
 }
 
-/// Computes points on a rank other than 0. An exception of f that is not an error of the library ends the study.
+/// Computes points on a rank other than 0. An exception of f that is not a failure of the point ends the study.
 template <class F>
 StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& options) {
   std::exception_ptr own;
@@ -104,9 +104,10 @@ void require_same_study(Study const& study) {
 
 }  // namespace detail
 
-/// Runs a study like `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
-/// exception. A rank on which f threw gets the original exception. If this is not rank 0, then rank 0 gets an Error
-/// that names the rank. The other ranks get an IoError with the message of rank 0. A single rank uses threads.
+/// Runs a study like `study.run(f, options)`, distributed over all ranks. All ranks must call this function. All ranks
+/// get the results, or an exception. A rank on which f threw gets the original exception. If f threw on another rank
+/// than rank 0, then rank 0 gets an Error that names this rank. The other ranks get an IoError with the message of rank
+/// 0. If there is only one rank, this function calls `study.run`, which uses threads.
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
   if (ranks.size() == 1) return study.run(f, options);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Ranks of a program under MPI. Needs mpi.h and a library: in CMake, `find_package(MPI REQUIRED COMPONENTS CXX)` and
-/// `target_link_libraries(program PRIVATE MPI::MPI_CXX)`.
+/// Ranks of a program under MPI. Needs mpi.h and the MPI library. In CMake: `find_package(MPI REQUIRED COMPONENTS CXX)`
+/// and `target_link_libraries(program PRIVATE MPI::MPI_CXX)`.
 ///
 /// Requires MPI.
 
@@ -72,7 +72,7 @@ struct RankMessage {
 };
 
 /// Sends a text with a `tag` to the rank `to`.
-/// \throws InvalidInput for a text of more than 2 GB, the limit of MPI.
+/// \throws InvalidInput for a text of 2 GiB or more, which exceeds the limit of MPI.
 template <class = void>  // compiled where it is used
 void send(int to, RankTag tag, std::string const& text) {
   if (text.size() > std::size_t(std::numeric_limits<int>::max()))

@@ -58,8 +58,8 @@ struct StudyResults {
   /// Returns true if every point has an outcome.
   bool complete() const { return finished() == points.size(); }
 
-  /// Values of the parameter or output `name` at the points that have outputs, in the order of the points. `name` is
-  /// the name or the head of a parameter, or the head of an output.
+  /// Values of the parameter or output `name` at the points that are finished and not failed, in the order of the
+  /// points. `name` is the name or the head of a parameter, or the head of an output.
   /// \throws InvalidInput if there is no such column.
   std::vector<double> column(std::string_view name) const {
     std::vector<double> values;

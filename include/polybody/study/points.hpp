@@ -81,7 +81,7 @@ class Points {
     for (std::size_t k = 0; k < j; ++k)
       if (columns_[k].name == column.name)
         throw InvalidInput("points.columns", {"study: duplicate column \"", ErrorObject{column.name},
-                                              "\". Give each column another name."});
+                                              "\". Give each column a different name."});
   }
   static void require_good_value(Column const& column, double value) {
     if (!std::isfinite(value))
@@ -120,7 +120,7 @@ class Point {
                                                   "\" contains numbers, not choices. Use point[\"", column, "\"]."});
     return static_cast<std::size_t>(points_->at(index_, j));
   }
-  /// Name of the point's choice in a `column`, as passed to `formulations`.
+  /// Name of the point's choice in a `column`, as passed to `formulations`. \throws StudyUsageError like `choice`.
   std::string const& chosen(std::string_view column) const {
     return points_->columns()[place(column)].choices[choice(column)];
   }
@@ -132,8 +132,9 @@ class Point {
   auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
     std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();
     if (count != 1 + sizeof...(others))
-      throw StudyUsageError("study.choices", {"study: column \"", ErrorObject{column}, "\" has ", ErrorValue{count},
-                                              " choices, but Point::with is called for ", 1 + sizeof...(others), "."});
+      throw StudyUsageError("study.choices",
+                            {"study: column \"", ErrorObject{column}, "\" has ", ErrorValue{count},
+                             " choices, but Point::with has arguments for ", 1 + sizeof...(others), "."});
     return call_nth(k, f, first, others...);
   }
 

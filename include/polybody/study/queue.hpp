@@ -18,10 +18,8 @@
 
 namespace polybody::detail {
 
-// File to which a study appends each finished point. Needs POSIX.
-
-// Reader of a study's record, which distinguishes complete lines, the incomplete line of a killed run, and invalid
-// content.
+// Record of a study: a file to which the study appends each finished point. The reader of a record distinguishes
+// complete lines, the incomplete line of a killed run, and invalid content. Needs POSIX.
 
 /// Identity of the study to which a record must belong.
 struct RecordKind {
@@ -182,7 +180,7 @@ class StudyRecord {
     if (why != EWOULDBLOCK) fail("cannot be locked", why);
     throw IoError("file.locked",
                   {"file \"", ErrorObject{kind_.file},
-                   "\" is written by another run of the study. Wait until that ends, or choose another file."});
+                   "\" is written by another run of the study. Wait until this run ends, or choose another file."});
   }
 
   /// Returns true if the open file still has its name. Another run removes the file that it created if it has written
@@ -240,7 +238,7 @@ namespace polybody {
 
 /// Options for running a study.
 struct StudyOptions {
-  int threads = 1;            ///< number of threads; with several ranks each rank computes one point at a time
+  int threads = 1;  ///< number of threads; no effect with several ranks, each of which computes one point at a time
   bool retry_failed = false;  ///< computes points again that failed in an earlier run
   bool progress = true;       ///< shows a bar with the remaining time if stderr is a terminal
   /// Wall-clock time limit of a point [s]; zero: no limit. A point that exceeds it is recorded as failed, and the study

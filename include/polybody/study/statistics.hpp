@@ -16,6 +16,7 @@ struct Statistics {
   std::vector<double> sorted{};  ///< (n) values in ascending order, in the same unit
 
   /// Quantile for the probability p in [0, 1], interpolated linearly: p = 0 gives the minimum, p = 0.5 the median.
+  /// \throws InvalidInput for another p.
   double quantile(double p) const {
     if (!(p >= 0.0 && p <= 1.0))
       throw InvalidInput("statistics.quantile",

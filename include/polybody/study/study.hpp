@@ -133,7 +133,7 @@ class Study {
   }
 
   /// Returns the results recorded so far, also while another process runs the study. The record is not changed.
-  /// \throws IoError like `run`.
+  /// \throws IoError for a file that cannot be read, is damaged, or belongs to another study.
   template <class = void>  // compiled where it is used
   StudyResults recorded() const {
     auto const bytes = detail::content_of(file_.file);

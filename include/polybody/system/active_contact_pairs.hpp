@@ -6,8 +6,8 @@
 
 namespace polybody {
 
-/// Selects contact pairs of force groups: only selected pairs have blocks in a matrix that is evaluated repeatedly. A
-/// pair is selected if it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in
+/// Selects contact pairs of force groups. Only the selected pairs have blocks in a matrix that is evaluated repeatedly.
+/// A pair is selected if it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in
 /// contact with the same partner. Neighbours are included because, for example, links of a track come into contact one
 /// after another.
 class ActiveContactPairs {
@@ -30,8 +30,8 @@ class ActiveContactPairs {
     if (next_ == groups_.size()) groups_.push_back({few, {}, {}});
     return groups_[next_++];
   }
-  /// Records for this evaluation if pair k of a group is in contact (`touches`). Returns true if the pair has blocks in
-  /// the matrix.
+  /// Records a contact of pair k of a group in this evaluation if `touches` is true. Returns true if the pair has
+  /// blocks in the matrix.
   bool note(Group& group, std::size_t k, bool touches) {
     if (k == group.has_blocks.size()) {
       group.has_blocks.push_back(0);

@@ -88,7 +88,7 @@ void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, Ve
 
 }  // namespace detail
 
-/// r += Gᵀλ of all constraint equations and of compliant joints, whose λ(g, ġ) is the force of their policy.
+/// r += Gᵀλ of all constraint equations and of compliant joints. For a compliant joint, its policy computes λ(g, ġ).
 template <StateScalar T>
 void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) {
   for (ConstraintBlock<T> const& block : data.rows) {

@@ -73,15 +73,15 @@ struct BodyKernels {
   /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end
   /// of this storage. \param owner position of the first body in the layout
   [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
-  /// Increases `forces` and `tangents` to the numbers of entries that threads need for all elements of one body, or for
-  /// all bodies if threads share these.
+  /// Increases `forces` and `tangents` to the numbers of entries that threads need for all elements of one body. If
+  /// threads share the bodies of the pool, `tangents` is increased to the number for all bodies.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
   /// Evaluates frame, Jacobian and bias of every marker.
   static void evaluate_marker(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
   /// Evaluates Φ and G of the bodies' own equations and stores them from `next` on. Returns the end of this storage.
   static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
-  static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< writes γ of own equation i to `out[i]`
+  static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< writes γ of own equations to `out`
   /// out = q ⊞ δ. If `places` is not null, the vectors are reduced, and `places` points to the position of the first
   /// body. Returns `places` past the last body.
   static ReducedPosition const* plus(Pool const& pool, ReducedPosition const* places, Vector const& q,

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Compatibility of joints and bodies: conditions of `Model::connect` for the types of a joint and its two bodies, in
-/// addition to those of `Joint`. The tables in docs/joints.md are generated from them.
+/// addition to those of `Joint`. The tables in docs/joints.md are generated from these conditions.
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint.hpp>
@@ -28,8 +28,8 @@ template <class P, class G>
 concept EnforceablePair = MeasurableGeometry<P, G> && EnforceableGeometry<P, G> && HolonomicOrConstrained<P, G> &&
                           JointCoordinatesIfRequired<P, G> && LinearIfRequired<P, G>;
 
-/// If policy P uses joint coordinates, body B is a rigid body or a floating frame, whose position they can determine.
-/// `joint_coordinates::ArticulatedBody` supports rigid bodies only.
+/// If policy P uses joint coordinates, body B is a rigid body or a floating frame. Joint coordinates can determine the
+/// position of these bodies only. `joint_coordinates::ArticulatedBody` supports rigid bodies only.
 template <class P, class B>
 concept CarriableBody =
     !JointCoordinatePolicy<P> || HasRigidLayout<B> ||

@@ -39,7 +39,7 @@ struct ReducedLayout {
   Sequence<Index> full_unknown = {};
   bool solves_by_bodies = false;       ///< true if the articulated-body algorithm solves the linear system
   bool moves_by_newton_euler = false;  ///< true if bodies of the tree have no elastic or other own forces
-  bool keeps_mass_constant = false;    ///< true if T is constant
+  bool keeps_mass_constant = false;    ///< true if T in v = T u is constant
 
   /// Computes the `full` multipliers from the multipliers `of_step`. Multipliers of eliminated equations without an
   /// estimate are set to zero.

@@ -149,7 +149,7 @@ struct Data {
   Sequence<Mat<double, 6, 6>> own_stiffness;  ///< workspace: stiffness of each marker of a force group
   Sequence<double> scratch;                   ///< workspace: blocks of n×18 and n×n; n: columns of the widest Jacobian
 
-  bool linear_rows = true;  ///< if false, linear joints and markers that only these use are omitted
+  bool linear_rows = true;  ///< if false, linear joints are omitted, and markers that only they use
   Sequence<char> read;      ///< for each marker: nonzero if it belongs to a force element or a nonlinear joint
 
   Workers* workers = nullptr;         ///< threads that share the loops; null for one thread

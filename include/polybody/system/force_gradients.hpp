@@ -29,8 +29,8 @@ struct GradientAt {
 };
 
 /// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) of the wrenches w of a law to `sink`, with ck, cd from x.c. Blocks that
-/// couple the bodies are omitted if the law permits this and neither `c.full` nor `c.exact` is true. With `c.full` the
-/// wrenches are also added to data.loads.
+/// couple the bodies are omitted if the law permits this and neither `c.full` nor `c.exact` is true. With `c.full`,
+/// −scale · w is also added to data.loads.
 template <class L>
 void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
                   BlockSink& sink) {
@@ -49,8 +49,8 @@ void add_gradient(L const& law, std::array<Index, L::markers> const& at, Gradien
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
 }
 
-/// Overload for a force element with first-order states z, wrenches w, rates h and frames x. It adds the blocks −Jᵀ
-/// ∂w/∂x J, −Jᵀ ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, each with its coefficient.
+/// Overload for a force element with wrenches w and first-order states z, ż = h. With the poses p of the markers, it
+/// adds the blocks −Jᵀ ∂w/∂p J, −Jᵀ ∂w/∂z, −∂h/∂p J and cm − ∂h/∂z, each with its coefficient.
 template <HasStates F>
 void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
@@ -85,9 +85,9 @@ void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& dat
     add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
 }
 
-/// Adds to `to`, for each marker of a pair, the stiffness with respect to its own motion. If `c.surrogate_friction` is
-/// true, the law's approximate `own_stiffness` replaces the exact stiffness. With `c.full` the wrenches are also added
-/// to data.loads.
+/// Adds to `to[k]` the stiffness of marker k of a pair with respect to the motion of this marker, without x.scale. If
+/// `c.surrogate_friction` is true, the law's approximate `own_stiffness` replaces the exact stiffness. With `c.full`,
+/// −scale · w of the wrenches w is also added to data.loads.
 template <class L>
 void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
                        std::array<Mat<double, 6, 6>*, 2> const& to) {

@@ -105,8 +105,8 @@ double potential_of(L const& law, std::array<Index, L::markers> const& at, doubl
 }
 
 /// Adds the power of the wrenches to p. If the law has a potential, the wrenches at zero velocity change the stored
-/// energy, and the remaining part of the wrenches dissipates energy, as do the states of the element. The potential is
-/// assumed to depend on frames and states only. If the law has no potential, its power is counted as power of loads.
+/// energy. The remaining part of the wrenches and the states of the element dissipate energy. The potential is assumed
+/// to depend on frames and states only. If the law has no potential, its power is counted as power of loads.
 template <class L>
 void add_power(L const& law, std::array<Index, L::markers> const& at, double t, double scale, Data<double> const& data,
                Powers& p) {
@@ -149,8 +149,8 @@ struct ForceKernels {
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:
-  /// Evaluates the wrenches of a group in several threads, each of them for a part of the many markers. Wrenches on
-  /// contact partners are stored for each part and then added in the order of a single thread, so that the sums are
+  /// Evaluates the wrenches of a group in several threads. Each thread evaluates a part of the many markers. Wrenches
+  /// on contact partners are stored for each part and then added in the order of a single thread, so that the sums are
   /// bitwise identical.
   static void add_forces_in_parts(Entry const& e, double t, Data<T>& data, AppliedWrench<T>* actions);
   /// Writes the stiffness of each marker of a group with respect to its own motion; zero without interaction. If

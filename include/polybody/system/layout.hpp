@@ -34,7 +34,7 @@ inline std::uint64_t next_serial() noexcept {
 struct ModelHistory {
   std::uint64_t changes = 1;  ///< number of additions, moves and destructions, plus one
   std::uint64_t moved = 0;    ///< value of `changes` at the last move to another object; 0: no move
-  bool ended = false;         ///< true after the model is destroyed or another one is assigned to it
+  bool ended = false;         ///< true after the model is destroyed or another model is assigned to it
 };
 
 }  // namespace detail
@@ -115,8 +115,8 @@ class ModelOrigin {
   std::shared_ptr<ModelHistory> history_;  ///< null before the first part is added
 };
 
-/// True if a model accepts ground markers of the model with serial number `given`. `serial` and `ancestors` are its own
-/// number and those of its ancestors.
+/// True if a model accepts ground markers of the model with serial number `given`. `serial` and `ancestors` are the
+/// serial numbers of the accepting model and of its ancestors.
 inline bool accepts(std::uint64_t serial, Sequence<std::uint64_t> const& ancestors, std::uint64_t given) {
   return given == serial || std::find(ancestors.begin(), ancestors.end(), given) != ancestors.end();
 }
@@ -181,7 +181,7 @@ struct ForceLayout {
   bool stores_in_part = false;   ///< true for a group in which not all laws have a potential
   bool lossless = false;         ///< true if its potential stores all work that is done on the element
   /// For a contact of two markers a and b: returns true if they touch during a step from the frames `from` [a, b] to
-  /// the frames `to` [a, b], but not at its ends. Null for other forces.
+  /// the frames `to` [a, b], but not at the ends of the step. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
   /// Power that its first-order states dissipate at time t [W]. Null for forces without `HasStatePotential`.
   double (*dissipation)(ForceLayout const& of, double t, Data<double> const& data) = nullptr;
@@ -190,14 +190,14 @@ struct ForceLayout {
 /// Sizes of a model, and positions and names of its bodies, joints and forces.
 struct ModelLayout {
   std::uint64_t serial = 0;                         ///< serial number of the model, which its handles contain
-  Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models from which it was copied
+  Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models from which this model was copied
   ModelWatch watch = {};                            ///< detects changes of the model
   Index coordinates = 0, velocities = 0, rows = 0;  ///< nq; nv, first-order states included; constraint equations
-  Index states = 0;                                 ///< number of first-order states, the last of the velocities
+  Index states = 0;                                 ///< number of first-order states, which are the last velocities
   Sequence<Index> nonholonomic_equations = {};      ///< indices of the nonholonomic equations, ascending
-  Sequence<BodyLayout> bodies = {};                 ///< bodies by type, in the order of addition
-  Sequence<JointLayout> joints = {};                ///< joints by type, in the order of addition
-  Sequence<ForceLayout> forces = {};                ///< forces by type, in the order of addition
+  Sequence<BodyLayout> bodies = {};                 ///< bodies grouped by type; each type in the order of addition
+  Sequence<JointLayout> joints = {};                ///< joints grouped by type; each type in the order of addition
+  Sequence<ForceLayout> forces = {};                ///< forces grouped by type; each type in the order of addition
   Sequence<Index> owners = {};                      ///< body of each marker; −1 for the ground
   Sequence<MarkerKind> observes = {};               ///< kinematics that each marker provides
   Vec3 gravity = Vec3::Zero();                      ///< (3) gravity in world axes [m/s²]
@@ -215,7 +215,8 @@ struct ModelLayout {
     return "unknown";
   }
   /// Name of the owner of unknown i. For i < `velocities`, the owner is the body of velocity i, or the force element
-  /// whose first-order state is velocity i. Otherwise it is the joint or body of constraint equation i − `velocities`.
+  /// whose first-order state is velocity i. Otherwise the owner is the joint or body of constraint equation i −
+  /// `velocities`.
   [[gnu::cold]] std::string name_of(Index i) const {
     Index const row = i - velocities;
     for (BodyLayout const& b : bodies)

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Constraint equations of linear joints, Φ = C_a e_a + C_b e_b − c, with constant C [thesis §3.5.4].
+/// Constraint equations of linear joints, Φ = C_a e_a + C_b e_b − c, with the coordinates e_a, e_b of the two bodies
+/// and constant C [thesis §3.5.4].
 
 #include <string>
 
@@ -144,11 +145,12 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
     } else {
       V const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
       if (std::abs(n.dot(t_a)) > 1e-9 || std::abs(n.dot(t_b)) > 1e-9)
-        throw InvalidInput("ancf_linear.pin_axis",
-                           {"\"", ErrorObject{rows.name},
-                            "\": the pin of a cable must be perpendicular to the cable, but the cosine of the "
-                            "angle between them is ",
-                            ErrorValue{std::max(std::abs(n.dot(t_a)), std::abs(n.dot(t_b)))}, "."});
+        throw InvalidInput(
+            "ancf_linear.pin_axis",
+            {"\"", ErrorObject{rows.name},
+             "\": the axis of a pin must be perpendicular to the cable, but the cosine of the angle "
+             "between axis and cable is ",
+             ErrorValue{std::max(std::abs(n.dot(t_a)), std::abs(n.dot(t_b)))}, ". Change the axis of the joint."});
       share(t_a, t_b, true);
     }
   } else if (a.complete() && b.complete()) {

@@ -19,7 +19,7 @@ template <class G, class P>
 inline constexpr bool is_joint_type<Joint<G, P>> = true;  // not instantiated here: its own messages come later
 }  // namespace detail
 
-/// Type of a joint: a `Joint`, or a type with the members of `Joint`.
+/// Type of a joint: a `Joint`, or another type with a member type `PolicyType`.
 template <class J>
 concept JointType = detail::is_joint_type<J>;
 

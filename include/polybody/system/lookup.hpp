@@ -11,8 +11,8 @@
 
 namespace polybody {
 
-/// Requires a ground marker of the model of `layout`, or of a model from which it was copied. \throws InvalidInput
-/// naming `what` for a marker of another model.
+/// Requires a ground marker of the model of `layout`, or of a model from which that model was copied. \throws
+/// InvalidInput naming `what` for a marker of another model.
 template <class = void>
 void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::string const& what) {
   if (!detail::accepts(layout.serial, layout.ancestors, marker.model)) detail::refuse_marker_of_another_model(what);
@@ -26,7 +26,7 @@ void require_own(M const& model, Marker<Ground> const& marker, std::string const
 
 namespace detail {
 /// Position in `places` of the body, joint or force of type T that has the index `index` within its type. \throws
-/// InvalidInput naming `what` if it was not added to the model with the serial number `serial`.
+/// InvalidInput naming `what` if this part was not added to the model with the serial number `serial`.
 template <class T, class Place>
 Index index_of(Sequence<Place> const& places, std::uint64_t serial, Index index, std::string const& what) {
   for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // index ≤ i for every part
@@ -119,7 +119,7 @@ BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, marker, question))], x);
 }
 
-/// Name of the body of a marker, found in the layout of its model.
+/// Name of the body of a marker, found in the layout of its model. \throws InvalidInput for a marker of another model.
 template <class B>
 std::string body_name(ModelLayout const& layout, Marker<B> const& marker) {
   return layout.bodies[std::size_t(index_of(layout, marker, "name"))].name;

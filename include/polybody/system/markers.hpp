@@ -72,7 +72,7 @@ inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::stri
 [[noreturn, gnu::cold]] inline void refuse_marker_of_another_model(std::string const& what) {
   throw InvalidInput("model.foreign_handle",
                      {"\"", ErrorObject{what},
-                      "\" was given a marker or handle of another model. Take it from a body of this model."});
+                      "\" was given a marker or handle of another model. Use a marker or handle of this model."});
 }
 
 }  // namespace polybody::detail

@@ -69,7 +69,7 @@ struct Energy {
 
 /// Powers in a state [W]. Powers that change a stored energy or the energy of gravity are not included; see `Energy`.
 struct Powers {
-  double drives = 0.0;      ///< power of motions prescribed in joints, in compliant joints and on bodies [W]
+  double drives = 0.0;      ///< power of motions prescribed in joints, including compliant joints [W]
   double loads = 0.0;       ///< power of loads, and of forces without a potential [W]
   double dissipated = 0.0;  ///< power lost in damped bodies, compliant joints, dampers and contacts, positive [W]
 };
@@ -141,8 +141,8 @@ class ModelOperations {
   virtual void element_tangents(At<T>, TangentCoefficients const&, Data<T>&, BlockSink&) const { missing("tangents"); }
   /// Adds the tangent of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G, to the sink, with ck, cd from c.
   virtual void compliant_tangents(TangentCoefficients const&, Data<T>&, BlockSink&) const { missing("tangents"); }
-  /// Adds the tangent of force elements at t [s] to the sink, with loads times `load_factor`. If c.full is true, it
-  /// also adds their wrenches to data.loads.
+  /// Adds the tangent of force elements at t [s] to the sink, with loads times `load_factor`. If c.full is true, the
+  /// function also subtracts the wrenches of the force elements from data.loads.
   virtual void force_tangents(double /*t*/, double /*load_factor*/, TangentCoefficients const&, Data<T>&,
                               BlockSink&) const {
     missing("tangents");

@@ -22,31 +22,31 @@ struct PlausibilityLimits {
   double warning = 0.05;   ///< unexplained energy that causes a warning, relative to `Unexplained::scale` [1]
 };
 
-/// Energy change of a run that its work does not explain. Symbols: see `PlausibilityCheck`.
+/// Energy change of a run that no work explains. Symbols: see `PlausibilityCheck`.
 struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
-  double worst = 0.0;   ///< largest such error of one step [J]
+  double worst = 0.0;   ///< largest estimated error of the work in one step [J]
   double scale = 0.0;   ///< largest T₀ + max(0, V₀ − V) + 2 W so far, plus 10⁻³ V₀⁺ and round-off [J]
   bool known = false;   ///< true if an energy balance was evaluated
-  long halved = 0;      ///< number of steps that were halved for their energy gain
+  long halved = 0;      ///< number of steps that were halved because of their energy gain
   double peak = 0.0;    ///< largest gain, less its error, at a balance during the run [J]
 };
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
-///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W.
+///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W,   limit = `PlausibilityLimits::energy`.
 /// V₀⁺ is the energy stored at the start, without gravity. W is the work input of forces without a potential, of drives
 /// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find only half
-/// of the work of a force that is switched on within a step. The balance is evaluated each time Σ v² has grown by a
-/// tenth. Only a gain is refused, so dissipation is not counted. At the end of a run and before each restart, `settle`
-/// evaluates the balance, with signed work unless a counted element can store energy. It counts losses if no part of
-/// the model dissipates energy. Models with a potential that depends on time have no energy balance.
+/// of the work of a force that starts within a step. The balance is evaluated each time Σ v² (all velocities) has grown
+/// by a tenth. Only a gain is refused, so dissipation is not counted. At the end of a run and before each restart,
+/// `settle` evaluates the balance, with signed work unless a counted element can store energy. It counts losses if no
+/// part of the model dissipates energy. Models with a potential that depends on time have no energy balance.
 ///
-/// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
-/// value. It halves a step that gains more than ½ limit · S, or that gains a tenth of this and ends with E − E₀ minus
-/// signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation, whose energy a new start
-/// would remove. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The unit of Σ v² is mixed,
-/// so a jump of slow, heavy bodies can be missed; the other balances find it.
+/// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of the largest
+/// Σ v². It halves a step that gains more than ½ limit · S. It also halves a step that gains a tenth of this and ends
+/// with E − E₀ minus signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation, whose
+/// energy a new start would remove. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The
+/// unit of Σ v² is mixed, so a jump of slow, heavy bodies can be missed; the other balances find it.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -112,7 +112,7 @@ class PlausibilityCheck {
   template <class = void>
   [[gnu::cold]] Unexplained settle(System& system, StepResult const& end);
 
-  int halvings = -1;  ///< number of times that the run may halve this step for its energy gain; −1: no such check
+  int halvings = -1;  ///< number of times that the run may halve this step for an energy gain; −1: no such check
 
   /// Scope of a trial step. Its destructor restores the check to its previous state unless `keep` was called.
   class Trial {
@@ -153,7 +153,7 @@ class PlausibilityCheck {
       if (std::abs(v[i]) > std::abs(v[fastest])) fastest = i;
     return fastest;
   }
-  /// False for a motion that is slow relative to its coordinates: its energy is round-off and not an instability.
+  /// False for a motion that is slow relative to its coordinates. Its energy gain is round-off and not an instability.
   static bool moves(StepResult const& end) {
     return std::abs(end.v[fastest_of(end.v)]) * end.h >= 1e-3 * (1.0 + largest_size(end.q));
   }
@@ -175,8 +175,8 @@ class PlausibilityCheck {
     double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
     return few * account_.energy * account_.scale;
   }
-  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error up to the
-  /// last balance, and up to this step at return [J] \throws NewtonConvergenceFailure if the run may halve the step
+  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error [J]:
+  /// given up to the last balance, returned up to this step \throws NewtonConvergenceFailure if a halving is possible
   template <class = void>
   void require_small_gain(System& system, StepResult const& end, double& gained, double& doubt);
   template <class = void>

@@ -15,8 +15,8 @@ struct PlacedElement {
   Index entry, element;
 };
 
-/// Distribution of the elements of a pool over the kernels. Bodies with fewer elements than a SIMD vector has lanes
-/// share SIMD vectors with the next bodies of equal elements. Other bodies are evaluated separately.
+/// Distribution of the elements of a pool over the kernels. Consecutive bodies share SIMD vectors if their elements are
+/// equal and each body has fewer elements than a SIMD vector has lanes. Other bodies are evaluated separately.
 struct PoolBatches {
   Sequence<Index> bodies;  ///< bodies that are evaluated separately
   Sequence<std::array<PlacedElement, std::size_t(simd_size)>> filled;

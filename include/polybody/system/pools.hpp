@@ -16,11 +16,13 @@
 
 namespace polybody {
 
-/// Lists of the types of bodies, joints and forces that a model can contain.
+/// List of the types of bodies that a model can contain.
 template <class... Bs>
 struct Bodies {};
+/// List of the types of joints that a model can contain.
 template <class... Js>
 struct Joints {};
+/// List of the types of forces that a model can contain.
 template <class... Fs>
 struct Forces {};
 
@@ -100,8 +102,8 @@ template <class... Ps>
 using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
 /// True if `entries` has an entry with this index that was added to the model with the serial number `serial`. A copied
-/// model accepts handles of entries that it copied from its original. Neither of the two accepts handles of entries
-/// that were added to the other one later.
+/// model accepts handles of entries that it copied from its original. Neither model accepts handles of entries that
+/// were added to the other model after the copy.
 template <class Entries>
 bool holds(Entries const& entries, Index index, std::uint64_t serial) {
   return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;

@@ -48,7 +48,7 @@ void pull_dense(MarkerKinematics<double> const& p, double const* w, Index down, 
 template <int m>
 BlockView pulled(MarkerKinematics<double> const& p, double const* w, Index down, Index right,
                  Sequence<double>& scratch) {
-  if (p.shape == JacobianShape::rigid) {  // by rows, since sinks store a body before its joint
+  if (p.shape == JacobianShape::rigid) {  // by rows, like the storage of the block solvers
     multiply_transposed_rigid<m>(p, w, down, right, scratch.data());
     return {scratch.data(), 6, m, m, 1};
   }
@@ -118,8 +118,8 @@ void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n
       if (a->columns > 0 && b->columns > 0) sink.skip(a->first, b->first, a->columns, b->columns);
 }
 
-/// Adds the effect of a marker's pose on its twist, at constant velocities of its body, to `of_pose`. On a rigid body v
-/// = ṙ₀ + ω × ρ. A small rotation e changes ω by e × ω, and v by
+/// Adds the effect of a marker's pose on its twist, at constant velocities of its body, to `of_pose`. On a rigid body,
+/// v = ṙ₀ + ω × ρ, with the arm ρ from the body's origin to the marker. A small rotation e changes ω by e × ω, and v by
 ///   (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ)   (Jacobi's identity).
 /// The effect is omitted for markers of other bodies. \param of_twist, of_pose derivatives with respect to twist and
 /// pose (rows × 6), by columns

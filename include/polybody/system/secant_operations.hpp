@@ -49,7 +49,7 @@ struct NearbySecants<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry
   using Constraints = std::tuple<Sequence<ConstraintSecant<Js::rows>>...>;
 };
 
-/// Frame of a marker with its twelve numbers as variables `first`, `first` + 1, … of S, a `Secant`.
+/// Frame of a marker. Its twelve numbers are the variables `first`, `first` + 1, … of the `Secant` type S.
 template <class S>
 Frame<S> frame_of(MarkerSecant const& m, int first) {
   Frame<S> f;
@@ -180,8 +180,8 @@ class TypedSecants final : public SecantOperations {
   }
 
   /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
-  /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
-  /// Newton's method therefore contracts.
+  /// approximates ∂Φ/∂q₁. The relative errors of K̄ and Ḡ are about the fraction of a revolution that a body makes in
+  /// the step. Newton's method therefore contracts.
   void tangent(double s, BlockSink& sink) override {
     Index const row0 = model_.velocities();
     model_.for_each_body([&](auto const& e) {

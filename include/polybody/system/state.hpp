@@ -5,8 +5,8 @@
 
 namespace polybody {
 
-/// State of a model. First-order states z have no coordinate. They follow the generalised velocities of the bodies in
-/// v, and ż follows the accelerations in a.
+/// State of a model. First-order states z have no coordinate. In v, they come after the generalised velocities of the
+/// bodies; in a, their derivatives ż come after the accelerations of the bodies.
 template <StateScalar T = double>
 struct StateOf {
   VecXOf<T> q;        ///< (nq) generalised coordinates

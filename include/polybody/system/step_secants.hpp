@@ -10,11 +10,13 @@ namespace polybody {
 
 /// Step of length h from q0 at time t to q1.
 struct SecantStep {
-  VecX const* q0 = nullptr;              ///< (nq) coordinates at the beginning of the step
-  VecX const* q1 = nullptr;              ///< (nq) coordinates at the end of the step
-  double t = 0.0, h = 0.0, decay = 0.0;  ///< t [s], h [s], factor of dissipated strain energy (`DiscreteDerivative`)
-  VecX const* v0 = nullptr;              ///< (nv) velocities at t; only the first-order states are read
-  VecX const* a = nullptr;               ///< (nv) rates over the step; only those of first-order states are read
+  VecX const* q0 = nullptr;  ///< (nq) coordinates at the beginning of the step
+  VecX const* q1 = nullptr;  ///< (nq) coordinates at the end of the step
+  /// In order: time t at the beginning of the step [s], length h of the step [s], dissipation parameter χ [1]. The step
+  /// dissipates the energy χ ΔεᵀCΔε, with the strains ε and the elastic stiffness C.
+  double t = 0.0, h = 0.0, decay = 0.0;
+  VecX const* v0 = nullptr;  ///< (nv) velocities at t; only the first-order states are read
+  VecX const* a = nullptr;   ///< (nv) rates over the step; only those of first-order states are read
 };
 
 /// Functions of a model for a `SecantStep`.
@@ -56,8 +58,8 @@ class StepSecants {
   /// `phi` = Φ(q₁).
   void violation(VecX& phi) const { operations_->violation(phi); }
   /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
-  /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
-  /// Newton's method therefore contracts.
+  /// approximates ∂Φ/∂q₁. The relative errors of K̄ and Ḡ are about the fraction of a revolution that a body makes in
+  /// the step. Newton's method therefore contracts.
   void tangent(System& system, double s, BlockSink& sink) {
     operations_->tangent(s, sink);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);

@@ -154,7 +154,8 @@ struct UserOperations final : ModelOperations<double> {
     k += c.mass * m;
     sink.add(0, 0, k);
   }
-  /// k −= factor ∂(f, h)/∂x for `count` entries of x, which is q or v. Central differences with relative step 1e-6.
+  /// k −= factor ∂(f, h)/∂x for the `count` entries from `first` on of x, which is q or v. Uses central differences
+  /// with the step 1e-6 (1 + |x|).
   void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
     if (factor == 0.0) return;
     x_near = x;
@@ -184,8 +185,8 @@ struct UserOperations final : ModelOperations<double> {
 }  // namespace detail
 
 /// Makes a system from the equations `mechanics`, which it stores. The second-order terms ∂(Gᵀλ)/∂q of constraint
-/// equations are omitted. Implicit steps of other systems may use these terms if they do not converge otherwise. \param
-/// name name in messages \param constant_mass true if M does not depend on q
+/// equations are omitted. Implicit steps of other systems may use these terms if Newton's method does not converge
+/// without them. \param name name in messages \param constant_mass true if M does not depend on q
 template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
   auto self = std::make_shared<detail::UserOperations<E>>(std::move(mechanics));

@@ -122,7 +122,9 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   VecX const q = configuration(), v = velocities();
   double const power = force_of<double>(elastic, q, v).dot(v);
   double const rate = slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
-  double by_mass = 0.0;  // zero with own constraint equations: ⊞ satisfies them and v does not, and v·Q_v is zero
+  // ½ vᵀM˙v. A body with own constraint equations has no power v·Q_v of the quadratic-velocity force Q_v. Differences
+  // along ⊞ do not apply, because ⊞ satisfies these equations and v does not.
+  double by_mass = 0.0;
   if constexpr (!HasOwnEquations<B>)
     by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));

@@ -160,9 +160,9 @@ struct JointLawsOf {
   /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), with ġ along the motion.
   void wrenches_have_the_power_of_the_multipliers();
   /// f_a + f_b = 0 for all frames. If the constraint equations are satisfied, the moments about every point are
-  /// balanced. Otherwise the constraint equations in world axes, with the force f, leave the moment d × f, where d =
-  /// r_b − r_a. This moment is zero for a force along d, such as that of a spring. If a geometry declares opposite
-  /// ends, Gb = −Ga is bitwise exact.
+  /// balanced. Otherwise the sum of the moments is d × f, with the force f of the constraint equations in world axes
+  /// and d = r_b − r_a. This moment is zero for a force along d, such as that of a spring. If a geometry declares
+  /// opposite ends, Gb = −Ga is bitwise exact.
   void wrenches_are_equal_and_opposite();
   /// A rotation and displacement of both frames and their twists rotates the constraint equations in world axes and
   /// does not change the other equations.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tests of properties that every compliant joint policy has: `PolicyLaws`.
+/// Tests of properties that every compliant joint policy (penalty, bushing) has: `PolicyLaws`.
 ///
 /// Requires GoogleTest.
 

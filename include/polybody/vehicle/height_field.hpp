@@ -8,10 +8,11 @@
 namespace polybody {
 
 /// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
-/// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At a border point it
-/// equals the slope of the chord to the only neighbour. So the heights z = a + bx + cy + dxy are reproduced exactly,
-/// and parabolas are reproduced away from the border. Beyond the border, the slope normal to the border decreases to
-/// zero linearly over one spacing and is zero farther out. Four numbers are stored for each height; copies share them.
+/// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At a border point the
+/// slope equals the slope of the chord to the only neighbour. So heights z = a + bx + cy + dxy are reproduced exactly
+/// within the grid, and parabolas are reproduced away from the border. Beyond the border, the slope normal to the
+/// border decreases to zero linearly over one spacing and is zero farther out. Four numbers are stored for each height;
+/// copies share them.
 class HeightField {
  public:
   /// Heights at the corners of equal rectangles.
@@ -45,8 +46,8 @@ class HeightField {
     bool computable = largest_number * finest * finest >= 1.0;
     for (double const x : nodes_->reshaped()) computable = computable && std::abs(x) <= largest_number;
     if (!computable)
-      throw InvalidInput("terrain.magnitude", {ErrorObject{what}, ": its slopes or curvatures are beyond ",
-                                               largest_number, ". Give heights and spacings in metres."});
+      throw InvalidInput("terrain.magnitude", {ErrorObject{what}, ": its slopes or curvatures exceed ", largest_number,
+                                               ". Give heights and spacings in metres."});
     highest_ = z.maxCoeff();
     Mat<double, 4, 4> const bx = x_.bezier(), by = y_.bezier();
     for (Index j = 0; j < y_.cells; ++j)
@@ -97,7 +98,8 @@ class HeightField {
   };
 
   /// Matrix with values and slopes in alternate rows, for the n rows of z with spacing h and one added row on either
-  /// side. In the added rows the slope is zero and the values are z − hz′/2 and z + hz′/2.
+  /// side. In the added rows the slope is zero. Their values are z₁ − hz₁′/2 and zₙ + hzₙ′/2, from the first and the
+  /// last row of z.
   static MatX with_slopes(MatX const& z, double h) {
     Index const n = z.rows();
     MatX all = MatX::Zero(2 * n + 4, z.cols());

@@ -13,11 +13,11 @@ namespace polybody {
 /// with one or both rims]. Marker a is the link's centre, with x to the front pin and z to the roller. Marker b is the
 /// roller's centre, with its axle along y. A rim is a circle of radius R in its middle plane.
 ///
-/// The lowest point of a rim, with the coordinate s along x, touches the face z = h if it lies above the link, |s| ≤
-/// p/2. The penetration is d = R − (height of the axle above the face). The face of one link ends where the next face
-/// begins. Within the distance ε = `handover` of this edge, each of the two links carries the fraction x² (3 − 2x) of
-/// the force, with x = (p/2 + ε − |s|)/2ε. So the force is continuous if a wheel passes from one link to the next. If
-/// the track bends towards the wheel, the regions above neighbouring faces overlap.
+/// The point of a rim nearest to the link, with the coordinate s along x, touches the face z = h if |s| ≤ p/2. The
+/// penetration is d = R − (height of the axle above the face). The face of a link ends at the edges |s| = p/2. The
+/// faces of the next links begin there. Within the distance ε = `handover` of an edge, each of the two links carries
+/// the fraction x² (3 − 2x) of the force, with x = (p/2 + ε − |s|)/2ε. So the force is continuous if a wheel passes
+/// from one link to the next. If the track bends towards the wheel, the regions above neighbouring faces overlap.
 ///
 /// A rim beyond the face may touch the edge of the face, for example on a bump. The penetration of the edge is d = R −
 /// c − (distance of the edge from the axle), with the chamfer c of the edge along the radius. This penetration is
@@ -32,7 +32,7 @@ struct LinkRollerContact {
   Required<double> half_width;       ///< half width of the face [m]
   Required<double> radius;           ///< R, radius of the rims [m]
   double handover = 0.03;            ///< ε, half length of the transition between two links [m]
-  double chamfer = 0.005;            ///< c, chamfer of the edges, greater than the penetration of the rims [m]
+  double chamfer = 0.005;            ///< c, chamfer of the edges; must exceed the penetration of the rims [m]
   std::vector<double> rims = {0.0};  ///< positions of the rims' middle planes along the axle [m]
 
   void check(std::string const& name) const {
@@ -94,7 +94,7 @@ struct LinkRollerContact {
   /// Upper bound of the distance between the centres of the roller and of a link in contact [m]. \param far upper bound
   /// of the distance of a rim from the roller's centre [m]
   double farthest(double far) const { return radius + half_thickness + half_width + pitch + far; }
-  /// Checks that the rims can reach the face. For at least one point of the axle within ±`far` of its middle, the
+  /// Returns true if the rims can reach the face: for at least one point of the axle within ±`far` of its middle, the
   /// height above the face must be less than the radius of the rims. `arm` is the vector from the link to the middle of
   /// the `axle`. The z axis of a cable is along x × axle (`link_axes`).
   bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
@@ -132,8 +132,9 @@ struct LinkRollerContact {
 
 /// Lateral guide of a track. A horn on the inner face of a link runs between the rims of a wheel and touches their
 /// inner faces. The markers are those of `LinkRollerContact`. The force is parallel to the axle. The penetration is the
-/// distance of the horn beyond the play. It is limited to the radial distance of the tip inside the circle of the rims.
-/// So the force also grows from zero if a horn comes down on a rim. This limit represents edges with a chamfer of 45°.
+/// distance of the tip from the middle plane of the wheel minus `play`. The penetration is limited to the radial
+/// distance of the tip inside the circle of the rims. So the force also grows from zero if a horn moves radially onto a
+/// rim. This limit represents edges with a chamfer of 45°.
 template <MarkerKind observed = MarkerKind::frame>
 struct GuideHornContact {
   static constexpr MarkerKind needs = observed;

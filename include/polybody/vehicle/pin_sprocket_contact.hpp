@@ -57,14 +57,14 @@ struct SprocketProfile {
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
       throw InvalidInput(
           "sprocket.valley",
-          {ErrorObject{name}, ": the radius of the tips must exceed that of the ends of the valleys' arcs, ", foot,
+          {ErrorObject{name}, ": the tip radius must exceed the distance of the arcs' ends from the axle, ", foot,
            " m, but is ", ErrorValue{tip_radius}, " m."});
     Vec2 const k = corner();
     if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
       throw InvalidInput(
           "sprocket.valley",
           {ErrorObject{name},
-           ": the valleys overlap and leave no teeth. Use a smaller valley, a lower tip or fewer teeth."});
+           ": the valleys overlap and leave no teeth. Use a smaller `valley_radius` or `tip_radius`, or fewer teeth."});
   }
 
   /// Penetration and unit normal of a pin on the profile. Both are continuous functions of the pin's position.
@@ -125,7 +125,7 @@ struct PinSprocketContact {
     double const across = arm.dot(axle), far = farthest_ring();
     double const askew = observed == MarkerKind::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
                                                        : std::abs(x.dot(axle));
-    // Distance of the pin's middle; at the rings the pin may be nearer by up to far · askew.
+    // Greatest distance of the pin's middle from the axle. At the rings the pin may be nearer by up to far · askew.
     double const reach = profile.outer_radius() + far * askew;
     return arm.squaredNorm() - across * across < reach * reach;
   }

@@ -104,8 +104,9 @@ class BumpCourse {
       require_finite(Vec3(b.x, b.y, b.height), bump, ": its middle and height");
       require_positive(b.length, bump, ": the length");
       if (!(b.width > 0.0))
-        throw InvalidInput("terrain.bump", {ErrorObject{bump}, ": the width must be positive, but is ",
-                                            ErrorValue{b.width}, " m. Omit it for a bump across the whole ground."});
+        throw InvalidInput("terrain.bump",
+                           {ErrorObject{bump}, ": the width must be positive, but is ", ErrorValue{b.width},
+                            " m. Omit the width for a bump across the whole ground."});
       double together = 0.0;  // every bump that covers a point of this bump overlaps it
       for (Bump const& other : bumps_)
         if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) &&

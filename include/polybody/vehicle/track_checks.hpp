@@ -18,9 +18,9 @@ namespace polybody {
 /// Pins of a track on their sprocket.
 struct SprocketEngagement {
   int seated = 0;  ///< number of pins within the tip radius
-  /// First pin that is not in the valley next to the previous pin's valley; −1 if there is none.
+  /// First seated pin that is not in the valley after that of the previous pin; −1 if there is none.
   int lost_at = -1;
-  /// True if two or more pins are between the teeth and no pin has jumped.
+  /// True if at least two pins are seated and `lost_at` is −1.
   bool holds() const { return seated >= 2 && lost_at < 0; }
 };
 
@@ -68,10 +68,10 @@ inline std::string tooth_step_warning(int teeth, double speed, double step) {
 
 /// Distance from p to the nearest point of the straight lines between consecutive corners [m]. Corners may coincide. A
 /// closed path must repeat its first corner at the end.
-/// \throws InvalidInput for a path without corners
+/// \throws InvalidInput for a path without corners.
 template <class = void>  // compiled only if it is used
 double distance_to_path(Vec2 const& p, std::span<Vec2 const> corners) {
-  if (corners.empty()) throw InvalidInput("path.empty", {"The path has no point. Give at least one point."});
+  if (corners.empty()) throw InvalidInput("path.empty", {"The path has no corner. Give at least one corner."});
   double nearest = (p - corners.front()).squaredNorm();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     Vec2 const along = corners[i + 1] - corners[i], to = p - corners[i];

@@ -83,7 +83,7 @@ struct TrackPath {
   int seated = 0;                     ///< number of pins on the sprocket, pins 0 … seated − 1
   int first_valley = 0;               ///< number of the valley (see `TrackLayout::seat`) of pin 0
   /// (2) Force on the tensioner's circle due to a unit tension of the track. If the tensioner's force along its
-  /// direction d is F, the tension is F / (−pull · d).
+  /// direction, the unit vector d, is F, then the tension is F / (−pull · d).
   Vec2 pull = Vec2::Zero();
 
   /// Value of `pin_on` for a pin that is seated on the sprocket.
@@ -143,9 +143,11 @@ inline void check_wrapped(TrackPath const& path) {
     Vec2 const before = path.pins[i] - path.pins[(i + n - 1) % n], after = path.pins[(i + 1) % n] - path.pins[i];
     double const turn = std::atan2(track_cross(before, after), before.dot(after));
     if (int(i) < path.seated && turn > 1e-9)
-      throw InvalidInput("track.sprocket",
-                         {"Track: no pin can sit on \"", ErrorObject{layout.sprocket.name},
-                          "\", which lies inside the line between its neighbours. Move the sprocket outwards."});
+      throw InvalidInput(
+          "track.sprocket",
+          {"Track: no pin can sit on \"", ErrorObject{layout.sprocket.name},
+           "\". The sprocket lies inside the straight line between the previous and the next wheel of the track. "
+           "Move the sprocket outwards."});
     if (std::abs(turn) > 0.5 * std::numbers::pi + 1e-9) {
       int const on = std::max(path.links[i].touches, path.links[(i + n - 1) % n].touches);
       throw InvalidInput("track.pitch",
@@ -157,10 +159,10 @@ inline void check_wrapped(TrackPath const& path) {
   }
   TrackClearances const gaps = clearances(path);
   if (gaps.circles < -1e-9 * layout.pitch)
-    throw InvalidInput("track.overlap", {"Track: link ", gaps.link, " passes ", ErrorValue{-gaps.circles},
-                                         " m deep through ", ErrorObject{track_name(layout.circles[gaps.circle])},
-                                         ". List a wheel wherever the track meets it, with its side, and leave room "
-                                         "for the links between it and its neighbours."});
+    throw InvalidInput("track.overlap", {"Track: link ", gaps.link, " lies ", ErrorValue{-gaps.circles}, " m inside ",
+                                         ErrorObject{track_name(layout.circles[gaps.circle])},
+                                         ". List a wheel once for each contact with the track, with its side, and "
+                                         "leave room for the links between neighbouring wheels."});
 }
 
 /// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of at most p/16 and
@@ -190,13 +192,13 @@ inline double track_travel(TrackLayout const& layout) {
       throw InvalidInput(
           "track.tensioner",
           {"Track: the track does not touch ", ErrorObject{name},
-           ", which therefore cannot tighten the track. List the circles in the order in which the track meets "
+           ", so this circle cannot tighten the track. List the circles in the order in which the track meets "
            "them; list a wheel twice if the track meets it above and below."});
     bool const few = layout.links <= shortest;
     throw InvalidInput("track.links",
                        {ErrorObject{"Track"}, ": ", ErrorValue{layout.links}, " links are too ", (few ? "few" : "many"),
                         ". With ", name, " within its travel the path needs ", shortest, " to ", longest,
-                        " links. Change their number, or the tensioner's travel."});
+                        " links. Change the number of links, or the tensioner's travel."});
   }
   for (int i = 0; i < 60; ++i) {
     double const middle = 0.5 * (below + above);

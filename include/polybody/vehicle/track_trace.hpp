@@ -99,9 +99,10 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
       double const apart = (a.centre - b.centre).norm();
       if (a.name == b.name) {
         if (apart > 0.0 || a.radius != b.radius)
-          throw InvalidInput("track.circle", {"Track: duplicate circle name ", ErrorObject{track_name(a)},
-                                              ". Give each wheel another name. The centre and radius of a wheel that "
-                                              "is listed twice must be the same both times."});
+          throw InvalidInput("track.circle",
+                             {"Track: duplicate circle name ", ErrorObject{track_name(a)},
+                              ". Give each wheel a different name. The centre and radius of a wheel that "
+                              "is listed twice must be the same both times."});
       } else if (double const deep = a.radius + b.radius - apart;
                  deep > 0.0 && (placed || (a.name != layout.tensioner.circle && b.name != layout.tensioner.circle))) {
         throw InvalidInput("track.overlap",
@@ -131,7 +132,7 @@ inline void check_track(TrackLayout const& layout) {
   TrackTensioner const& t = layout.tensioner;
   if (!found)
     throw InvalidInput("track.tensioner", {"Track: the tensioner's circle \"", ErrorObject{t.circle},
-                                           "\" is not a circle of the track. Use the name of one of its circles."});
+                                           "\" is not a circle of the track. Use the name of a circle in `circles`."});
   if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
       !std::isfinite(t.most - t.least))
     throw InvalidInput("track.tensioner",
@@ -183,7 +184,7 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// First seat that the track meets, among `start` and the seats in front of it. All other seats are to the right of the
+/// First seat that the track meets, among `start` and the seats before `start`. All other seats are to the right of the
 /// line from `pin` to this seat. The direction of the line is written to `sight`.
 inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
                             TrackSight& sight) {

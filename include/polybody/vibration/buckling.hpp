@@ -91,7 +91,7 @@ class PrebucklingPath {
     throw InvalidInput(
         "buckling.unstable",
         {ErrorObject{"buckling_modes"}, ": the structure is not stable at load factor ", ErrorValue{factor_},
-         ": a motion has no stiffness or a negative one. Fix free motions by joints or springs, or "
+         ": a motion has zero or negative stiffness. Fix free motions by joints or springs, or "
          "start from a smaller load factor."});
   }
   /// Central difference (B(h) − B(−h))/2h of B = Nᵀ K N at the load factors p₀ ± h.

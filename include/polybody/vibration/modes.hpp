@@ -68,7 +68,7 @@ MatX free_motions(MatX const& g, Index states = 0) {
   return n;
 }
 
-/// Least-squares solution of A x = b with minimum norm; pivots below `threshold` count as zero.
+/// Least-squares solution of A x = b with minimum norm; pivots below `threshold` times the largest pivot count as zero.
 template <class = void>
 MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   Eigen::CompleteOrthogonalDecomposition<MatX> solver(a.rows(), a.cols());
@@ -232,9 +232,10 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
     Eigen::LLT<MatX> const inertia(m_bodies);
     VecX const pivots = inertia.matrixLLT().diagonal();
     if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
-      throw InvalidInput("modes.no_inertia",
-                         {ErrorObject{"damped_modes"},
-                          ": a motion that the joints permit has no inertia. Constrain it or give it inertia."});
+      throw InvalidInput(
+          "modes.no_inertia",
+          {ErrorObject{"damped_modes"},
+           ": a motion that the joints permit has no inertia. Constrain this motion or give it inertia."});
     slowest = detail::smallest_solution(k_bodies, m_bodies, 1e-9).norm();  // at least 1/ω² of the lowest ω
   }
   double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;

@@ -192,10 +192,10 @@ struct TurningEquilibrium {
   /// Throws the error of a failed iteration. \throws NewtonConvergenceFailure if `result` is `diverged`, otherwise
   /// NonFiniteValue.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
-    std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
+    std::string const at = sentence_of({" at ", frame.share, " times the angular velocity"});
     if (result != NewtonResult::diverged)
       throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"relative_equilibrium"}, ": a force is not finite",
-                                                      at, ". Check the forces and the start."});
+                                                      at, ". Check the forces and the initial state."});
     throw NewtonConvergenceFailure(
         "equilibrium.not_converged",
         {ErrorObject{"relative_equilibrium"}, ": Newton's method did not converge", at,

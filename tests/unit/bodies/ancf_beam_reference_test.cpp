@@ -217,10 +217,10 @@ TEST(AncfBeam, NamesWhatTheBarDoesNotGive) {
   EXPECT_TRUE(has(refused<AncfBeam<>>(b), "EI_y"));
   b = by_constants();
   b.constants->rotary_inertia = 0.0;
-  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "the rotary inertia of the bar, the mass of the gradient r_y"));
+  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "the bar's rotary inertia about z (mass of the gradient r_y)"));
   b = by_constants();
   b.constants->rotary_inertia_y = 0.0;
-  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "about y, the mass of the gradient r_z"));
+  EXPECT_TRUE(has(refused<AncfBeam<>>(b), "about y (mass of the gradient r_z)"));
   EXPECT_TRUE(has(refused<AncfBeam<>>(by_constants(), 0), "at least one element"));
   b = by_constants();
   b.length = 0.0;

@@ -263,12 +263,12 @@ TEST(MatrixStructure, RefusesAMassThatIsNotOfSolidElements) {
   EXPECT_TRUE(has(told([](Block& b) { b.mass(0, 4) = b.mass(4, 0) = 0.1; }),
                   "couples different directions in row 4 (y of node 1), column 0"));
   EXPECT_TRUE(has(told([](Block& b) { b.mass(5, 5) *= 1.01; }), "row 5 (z of node 1), column 5 (z of node 1)"));
-  EXPECT_TRUE(has(told([](Block& b) { b.mass = -b.mass; }), "not positive definite; it fails at node"));
+  EXPECT_TRUE(has(told([](Block& b) { b.mass = -b.mass; }), "not positive definite; its factorisation fails at node"));
   EXPECT_TRUE(has(told([](Block& b) {
                     for (Index i = 0; i < 36; ++i)
                       for (Index k = 15; k < 18; ++k) b.mass(i, k) = b.mass(k, i) = 0.0;
                   }),
-                  "not positive definite; it fails at node 5"));
+                  "not positive definite; its factorisation fails at node 5"));
 }
 
 TEST(MatrixStructure, RefusesAStiffnessThatResistsRigidMotions) {

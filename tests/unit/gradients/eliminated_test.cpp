@@ -98,7 +98,7 @@ TEST(Eliminated, OtherUnknownsUnderAParameterAreRefused) {
   auto const said = [&](double place) {
     return refusal([&] { sensitivities(make, {{"place [m]", place}}, GeneralisedAlpha{}); });
   };
-  EXPECT_TRUE(has(said(0.25), "changing \"place [m]\" changes which coordinates AncfLinear eliminates"));
+  EXPECT_TRUE(has(said(0.25), "a change of \"place [m]\" changes the coordinates that AncfLinear eliminates"));
   EXPECT_EQ(sensitivities(make, {{"place [m]", 0.2}}, GeneralisedAlpha{}).times.size(), 11u);
 }
 

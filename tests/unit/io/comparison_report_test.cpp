@@ -118,7 +118,7 @@ TEST_F(ComparisonReport, TableHoldsWhatIsPrintedInFullPrecision) {
   EXPECT_EQ(value("CPU ratio to the first", 2), 2.0);
   EXPECT_EQ(value("energy at the end - at the start [J]", 1), 1.0 / 3.0);
   EXPECT_EQ(value("end: x [m]", 1), std::cos(10.0));
-  EXPECT_EQ(value("most off the first: x [m]", 2), 0.01);
+  EXPECT_EQ(value("largest difference from the first: x [m]", 2), 0.01);
 }
 
 TEST_F(ComparisonReport, HistoriesReadBackOneFileARun) {
@@ -329,7 +329,7 @@ TEST_F(ComparisonReport, RefusesWhatIsNoComparison) {
   EXPECT_TRUE(has(refusal([&] { write_figures({}, folder); }), "no runs"));
   Comparison c = oscillators();
   c.runs[1].energies.pop_back();
-  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "the run \"stiff/ρ\" lacks times"));
+  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "the run \"stiff/ρ\" has no times"));
   c = oscillators();
   c.runs[1].output_names[0] = "y [m]";
   EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "the run \"stiff/ρ\""));
@@ -358,8 +358,8 @@ TEST_F(ComparisonReport, RefusesCurvesOfDifferentOutputsInOneFigure) {
   EXPECT_TRUE(has(refusal([] { work_precision_figure({}); }), "there are no curves"));
   WorkPrecision w = work();
   w.curves[1].output = "v [m/s]";
-  EXPECT_TRUE(
-      has(refusal([&] { work_precision_figure(w); }), "\"stiff\" is for the output \"v [m/s]\", not \"x [m]\""));
+  EXPECT_TRUE(has(refusal([&] { work_precision_figure(w); }),
+                  "the curve \"stiff\" shows the output \"v [m/s]\", not \"x [m]\""));
 }
 
 }  // namespace comparison_report_test

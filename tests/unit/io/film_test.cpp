@@ -287,7 +287,7 @@ TEST_F(FilmFiles, LeaveNothingHalfWritten) {
   EXPECT_TRUE(has(message_of<IoError>([&] { film.write(folder / "taken.html"); }), "not a regular file"));
   Film lost({.viewer = bare_viewer, .follow = "nobody"});
   lost.scene("one").record(0.0, visual.at(x));
-  EXPECT_TRUE(has(refusal([&] { lost.write(folder / "film.html"); }), "no part \"nobody\" to follow"));
+  EXPECT_TRUE(has(refusal([&] { lost.write(folder / "film.html"); }), "no part \"nobody\". Set FilmOptions::follow"));
   EXPECT_FALSE(fs::exists(folder / "film.html"));
   for (auto const& entry : fs::recursive_directory_iterator(folder)) EXPECT_NE(entry.path().extension(), ".tmp");
 }
@@ -300,7 +300,7 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
                 }});
   EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "already has a colour scalar"));
   EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "Record a frame first"));
-  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "there is nothing to draw"));
+  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "the frame has no parts"));
   EXPECT_TRUE(has(refusal([&] { scene.record(0.0, visual.at(x)); }), "on \"cable\" differs from the number of points"));
   FilmScene& two = film.scene("two");
   FilmArrows const forces = two.arrows("force", "N");

@@ -119,7 +119,8 @@ TEST(ModePictures, RefuseWhatCannotBeDrawn) {
   fs::path const stem = b.folder / "none";
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX::Zero(6, 1), stem); }),
                   "a mode has 6 velocities, but the state has 12"));
-  EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX(12, 0), stem); }), "the shapes have no mode"));
+  EXPECT_TRUE(
+      has(refusal([&] { write_modes(b.visual, b.x, MatX(12, 0), stem); }), "the matrix of shapes has no columns"));
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.size = 0.0}); }), "size"));
   EXPECT_TRUE(
       has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.look_from = {0, 0, 2}}); }), "not parallel"));

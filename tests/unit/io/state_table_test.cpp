@@ -138,9 +138,9 @@ TEST_F(StateTable, RefusesAnotherUnitAndOneNumberTwice) {
   Table const table = state_table(model, {model.reference_state()});
   Table other = table;
   *std::ranges::find(other.columns, "upper q[0] [m]") = "upper q[0] [mm]";
-  EXPECT_TRUE(
-      has(refusal([&] { state_from(model, other, 0); }),
-          "the unit of the column \"upper q[0] [mm]\" is not [m]. Convert its numbers and call it \"upper q[0] [m]\""));
+  EXPECT_TRUE(has(refusal([&] { state_from(model, other, 0); }),
+                  "the unit of the column \"upper q[0] [mm]\" is not [m]. Convert its numbers and rename the column to "
+                  "\"upper q[0] [m]\""));
   Table twice = table;
   twice.columns.push_back("upper q[0]");
   twice.rows[0].push_back(0.0);

@@ -99,10 +99,10 @@ TEST(PenaltyPerEquation, EachRowHasItsNumbers) {
 TEST(PenaltyPerEquation, RefusesNumbersThatCannotBeMeantByNameAndRow) {
   EXPECT_TRUE(
       has(refusal([] { PenaltyPerEquation<2>{.stiffness = Vec2(1, 0), .damping = Vec2(0, 0)}.check("\"hinge\""); }),
-          "\"hinge\": the penalty stiffness of row 2 must be positive"));
+          "\"hinge\": the penalty stiffness of constraint equation 2 must be positive"));
   EXPECT_TRUE(
       has(refusal([] { PenaltyPerEquation<2>{.stiffness = Vec2(1, 1), .damping = Vec2(-1, 0)}.check("\"hinge\""); }),
-          "\"hinge\": the penalty damping of row 1 must be zero or positive"));
+          "\"hinge\": the penalty damping of constraint equation 1 must be zero or positive"));
 }
 
 // --- concepts: a policy is of exactly one kind ----------------------------------------------------------------

@@ -79,7 +79,7 @@ TEST(Check, SaysWhatItFinds) {
   EXPECT_EQ(c.stiffest, 0.0);
   std::string const text = said(c);
   for (char const* const line :
-       {"constraint violation 0.25 (positions), 0 (velocities), the largest in joint \"pin\"\n",
+       {"constraint violation 0.25 m or rad (positions), 0 m/s or rad/s (velocities), the largest in joint \"pin\"\n",
         "4 constraint equations of rank 3, 3 degrees of freedom\n",
         "joint \"second\": 1 redundant constraint equation\n", "not joined to the ground: stray\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << "in\n" << text;

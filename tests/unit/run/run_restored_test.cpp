@@ -112,7 +112,7 @@ TEST(RunSnapshot, NumbersThatAreNotFiniteAreRefused) {
   EXPECT_TRUE(has(said([&](State& x) { x.v[1] = nan; }), "resume: the velocities of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.a[2] = nan; }), "resume: the accelerations of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.lambda[0] = nan; }), "resume: the multipliers of the snapshot"));
-  EXPECT_TRUE(has(said([&](State& x) { x.history[0] = nan; }), "resume: the integrator's memory in the snapshot"));
+  EXPECT_TRUE(has(said([&](State& x) { x.history[0] = nan; }), "resume: the integrator history of the snapshot"));
 }
 
 }  // namespace run_restored_test

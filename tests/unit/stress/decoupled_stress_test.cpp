@@ -519,7 +519,7 @@ TEST(DecoupledStress, RefusesInSentences) {
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(2.0); }), "lies outside the body"));
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(0.5, 1); }), "bar 1 does not exist"));
   EXPECT_TRUE(has(refusal([&] { low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 60.0}); }),
-                  "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz for samples 0.01 s apart. Record in "
+                  "the cut-off of 60 Hz is above the Nyquist frequency of 50 Hz for samples 0.01 s apart. Record in "
                   "smaller steps"));
   EXPECT_EQ(low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 15.0}).size(), run.samples.size());
 

@@ -205,8 +205,9 @@ TEST(NodalStress, OfModesIsThatOfTheirDisplacements) {
     EXPECT_LT((third[i] - expected.col(Index(i)).segment<6>(6 * 4)).norm(), 1e-10 * expected.norm());
     EXPECT_EQ(mises[i], von_mises(third[i]));
   }
-  EXPECT_TRUE(has(refusal([&] { modal.of(shapes * q); }), "have 945 rows, but its matrix has 6 columns"));
-  EXPECT_TRUE(has(refusal([&] { stress().modal(q); }), "the shapes have 6 rows, but its matrix has 945 columns"));
+  EXPECT_TRUE(has(refusal([&] { modal.of(shapes * q); }), "have 945 rows, but the stress matrix has 6 columns"));
+  EXPECT_TRUE(
+      has(refusal([&] { stress().modal(q); }), "the shapes have 6 rows, but the stress matrix has 945 columns"));
 }
 
 // Rigid link rotating about the direction of its pins. The mean stress in a section is ½ ρω² (p²/4 − x²). The surface
@@ -320,11 +321,11 @@ TEST_F(NodalStressFiles, ThatAreBrokenAreNamedByFileAndLine) {
 TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
   NodalStress const s = NodalStress::read(matrix, names, 6);
   VecX const e = VecX::Zero(6);
-  EXPECT_TRUE(
-      has(refusal([&] { s.of("nearly", e); }), "no node is called \"nearly\". There are \"the far end\", \"near\"."));
+  EXPECT_TRUE(has(refusal([&] { s.of("nearly", e); }),
+                  "no node is called \"nearly\". The named nodes are \"the far end\", \"near\"."));
   EXPECT_TRUE(has(refusal([&] { s.von_mises("", e); }), "no node is called \"\""));
   EXPECT_TRUE(
-      has(refusal([&] { s.of(VecX::Zero(5)); }), "the displacements have 5 rows, but its matrix has 6 columns"));
+      has(refusal([&] { s.of(VecX::Zero(5)); }), "the displacements have 5 rows, but the stress matrix has 6 columns"));
   EXPECT_TRUE(has(refusal([&] { s.of("near", VecX::Zero(7)); }), "the displacements have 7 rows"));
   for (Index const n : {0, 7, -3})
     EXPECT_TRUE(has(refusal([&] { NodalStress::read(matrix, names, n); }),
@@ -333,7 +334,7 @@ TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {}); }), "at least one node is needed"));
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}, {1, "b"}}); }), "has 6 rows, but 2 nodes need 12"));
   m.insert(4, 2) = NAN;
-  EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}}); }), "row 4, column 2 of its matrix is "));
+  EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}}); }), "row 4, column 2 of the matrix is "));
   EXPECT_TRUE(has(refusal([&] { NodalStress(NodalStress::Matrix(12, 3), {{0, "a"}, {1, "a"}}); }),
                   "duplicate node name \"a\""));
 }

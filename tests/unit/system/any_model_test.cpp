@@ -91,7 +91,7 @@ TEST(AnyModel, NamesTheIntegratorThatItWasMadeWithout) {
   State x = any.reference_state();
   EXPECT_EQ(refusal([&] { simulate(any, x, Radau{}, {.end_time = 1.0, .step = 1e-2}); }),
             std::string("AnyModel was made without the integrator ") + Radau::name +
-                ". Give it to the constructor: AnyModel(model, stepped_by<...>).");
+                ". Add this integrator to the list in AnyModel(model, stepped_by<...>).");
 }
 
 }  // namespace any_model_test

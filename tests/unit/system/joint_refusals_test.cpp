@@ -67,7 +67,7 @@ TEST(RefusedJoint, IsDrivenThroughAJump) {
 TEST(RefusedJoint, HasATableThatGoesBack) {
   EXPECT_TRUE(
       has(refusal([] { (void)TabulatedLaw{MonotoneTable({{0.0, 0.0}, {0.2, 1.0}, {0.1, 2.0}}, "\"elbow\""), 0.0}; }),
-          "\"elbow\": the abscissae of the table must increase, but point 3 has 0.1 after 0.2"));
+          "\"elbow\": the abscissae of the table must increase, but point 3 has x = 0.1 after x = 0.2"));
   EXPECT_TRUE(has(refusal([] { (void)SmoothTable({{0.0, 0.0}, {0.2, 1.0}, {0.2, 2.0}}, {}, "\"elbow\""); }),
                   "\"elbow\": the times must increase, but point 3 at t = 0.2 s follows a point at 0.2 s."));
 }

@@ -120,7 +120,7 @@ TEST(Model, RefusesMarkersAndHandlesOfAnotherModel) {
   auto const own = model.add(bar(), "own"), foreign = another.add(bar(), "foreign");
   auto const at = foreign.at(Vec2(0, 0));
   State x = model.reference_state();
-  char const* const said = "of another model. Take it from a body of this model.";
+  char const* const said = "of another model. Use a marker or handle of this model.";
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at, "elbow"); }), "\"elbow\""));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at); }), said));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, another.ground().at({0, 0, 0}), own.at(Vec2(0, 0))); }), said));

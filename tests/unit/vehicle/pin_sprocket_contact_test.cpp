@@ -381,8 +381,7 @@ TEST(PinSprocketContact, RefusesNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.valley_radius = x; }), "\"sprocket\": the radius of the valleys"));
     EXPECT_TRUE(
         has(told([&](auto& g) { g.profile.flank = x; }), "\"sprocket\": the half angle of a valley's arc must lie"));
-    EXPECT_TRUE(
-        has(told([&](auto& g) { g.profile.tip_radius = x; }), "\"sprocket\": the radius of the tips must exceed"));
+    EXPECT_TRUE(has(told([&](auto& g) { g.profile.tip_radius = x; }), "\"sprocket\": the tip radius must exceed"));
   }
   EXPECT_TRUE(
       has(told([](auto& g) { g.profile.teeth = 3; }), "\"sprocket\": a sprocket needs at least four teeth, but has 3"));

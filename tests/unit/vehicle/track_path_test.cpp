@@ -336,7 +336,7 @@ TEST(TrackPath, RefusesCirclesOutOfOrder) {
   layout = m113::track();
   layout.circles.erase(layout.circles.begin() + 6, layout.circles.end());
   layout.circles[2].centre[1] = 0.6;  // wheel 3 penetrates the upper run, for which it is not listed
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "deep through \"wheel 3\""));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), " m inside \"wheel 3\""));
 }
 
 TEST(TrackPath, RefusesAWheelOnItsWrongSide) {

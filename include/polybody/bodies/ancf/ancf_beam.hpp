@@ -53,8 +53,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
   /// Beam of n elements with a curved or twisted reference, free of stress except for the pretension. The nodes have
   /// the positions and axes of `curve`; the element field interpolates between them.
-  /// \throws InvalidInput for n < 1, a missing constant, a reference gradient without a positive determinant, or a
-  /// `curve` that is not parameterised by arc length.
+  /// \throws InvalidInput for n < 1, a missing constant, an element whose reference is turned inside out, or a `curve`
+  /// that is not parameterised by arc length.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   char const* coordinate_unit(Index i) const { return i % node_columns < 3 ? "m" : "1"; }
@@ -134,10 +134,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return -this->of_element(e, q).dot(weight);
   }
 
-  /// Matrix S of r = S e at `p`, 3×24 and constant. S is also the Jacobian of ṙ. The coordinates e begin at
-  /// `first_column(p)`.
+  /// Matrix S (3×24, constant) of r = S e at `p`, and Jacobian of ṙ. The coordinates e begin at `first_column(p)`.
   PointMap position_map(Point const& p) const { return map_of(p, 0); }
-  /// Matrix S_α of the gradient S_α e = ∂r/∂x, ∂r/∂y, ∂r/∂z at `p` for `alpha` = 0, 1, 2; 3×24 and constant.
+  /// Matrix S_α of the gradient S_α e = ∂r/∂x, ∂r/∂y or ∂r/∂z at `p`, for `alpha` = 0, 1 or 2; 3×24 and constant.
+  /// \throws InvalidInput for another `alpha`.
   PointMap gradient_map(Point const& p, int alpha) const {
     if (alpha < 0 || alpha > 2)
       throw InvalidInput(
@@ -189,8 +189,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     out.columns = element_columns;
   }
 
-  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. The force contributes nothing, because S is constant. For the moment
-  /// and rotations φ, φ̂ of the section due to two variations, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the axes of the section.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. The force contributes nothing, because S is constant. If variations δ
+  /// and δ̂ rotate the section by φ and φ̂, the moment gives m·(φ̂ × φ) + m·δ̂φ in the axes of the section.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
@@ -246,8 +246,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
   Mat3 strain(Point const& p, std::span<double const> q) const { return deformation(p, q).strain(p.xi, p.y, p.z); }
-  /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms are those on the axis, and
-  /// the shear stresses are the corrected ones, which are means over the section.
+  /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms follow from the strain on
+  /// the axis. The shear stresses follow from GA and GA_z, and are therefore means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
     requires(!std::same_as<Elastic, ElasticLine>)
   {
@@ -371,9 +371,9 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
     : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
   std::string const name = Elastic::name;
   require_elements(n, name);
-  require_positive(constants_.rotary_inertia, name, ": the rotary inertia of the bar, the mass of the gradient r_y,");
+  require_positive(constants_.rotary_inertia, name, ": the bar's rotary inertia about z (mass of the gradient r_y)");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
-                   name + ": the rotary inertia of the bar about y, the mass of the gradient r_z,");
+                   name + ": the bar's rotary inertia about y (mass of the gradient r_z)");
   require_polar_inertia_of_points(constants_, name);
   Elastic::check(bar, constants_);
   l_ = bar.length / double(n);

@@ -143,8 +143,8 @@ struct Stress {
 };
 
 /// Elastic force by general continuum mechanics. Green–Lagrange strain E = ½ (FᵀF − 1) relative to the reference, with
-/// F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in three dimensions. D is written in
-/// squares, so that strains do not couple:
+/// F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in three dimensions. The energy ½ S :
+/// E is a sum of squares, so that strains do not couple. For τ = 0,
 ///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
 ///
 /// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four
@@ -160,7 +160,7 @@ struct Stress {
 ///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points of the section.
 ///   Their distance to the axis is scaled so that the torsional stiffness equals GJ of the bar. The quadrature has
 ///   three points along x. With two, a mode would have no energy; with three, the element does not lock
-///   (`ElasticLine`).
+///   (explained at `ElasticLine`).
 ///
 /// Kelvin–Voigt times: axial for normal strains and therefore also for bending; shear for shears. Ė is objective.
 /// `Damping::bending` is not used by this policy.

@@ -11,10 +11,12 @@ namespace polybody {
 
 /// Elastic force from the strains of the axis and of the sections [Simo & Vu-Quoc 1986b; Nachbagauer, Gruber &
 /// Gerstmayr 2013]. With the section frame R of (r_y, r_z),
-///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the strains of the exact rod;
+///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures):
+///     the strains of the geometrically exact beam;
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the strains of the section, with stiffness EA, EA, GA.
 /// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
-/// On fine meshes the sections therefore keep their shape, and the element converges to the exact rod. Quadrature:
+/// On fine meshes the sections therefore keep their shape, and the element converges to the geometrically exact beam.
+/// Quadrature:
 ///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0 and
 ///   the same transverse r_x at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, which is zero
 ///   at both points. The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with Γ = 0.
@@ -79,7 +81,7 @@ struct ElasticLine {
         Vec<T, 6> const s = f.pull(f.axis(k));
         for (int const i : turning)
           for (int const j : turning) twice(i, j) -= nu * s[i] * s[j];
-        f.to_vectors(f.pull(f.local(f.cross(nw, f.axis(k)))), k, 3, across);  // e_k·(ω̂ × n) = (n × e_k)·ω̂
+        f.to_vectors(f.pull(f.local(f.cross(nw, f.axis(k)))), k, 3, across);  // e_k·(φ̂ × n) = (n × e_k)·φ̂
         for (int j = 3; j < 9; ++j) {
           h(k, j) += across(k, j);
           h(j, k) += across(k, j);

@@ -55,11 +55,11 @@ class Reference {
   }
 
   /// Gradients ∂N/∂X with respect to the position X in the axes of the section, so that F = Σ e_v (∂N_v/∂X)ᵀ is the
-  /// identity in the reference. Also the reference volume dV/(dx dy dz) relative to the volume on the axis. Between the
-  /// nodes of a curved element the interpolated section is smaller than the section of the bar.
+  /// rotation of the section in the reference. The volume dV/(dx dy dz) is divided by its value on the axis, because
+  /// between the nodes of a curved element the interpolated section is smaller than the section of the bar.
   struct Gradients {
     Mat<double, vectors, 3> g;  ///< 8×3, a row for each nodal vector
-    double volume;              ///< volume relative to the volume on the axis
+    double volume;              ///< dV/(dx dy dz), divided by its value on the axis [1]
   };
   /// Gradients ∂N/∂X = [N_x N_y N_z] J₀⁻¹ at (ξ, y, z) [m], with J₀ = Rᵀ [r_x r_y r_z] of the reference and R its
   /// section frame.

@@ -39,8 +39,8 @@ struct GreenStrain {
   }
 };
 
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². In the exact rod, axial force and
-/// bending moment are linear in ε and κ [Gerstmayr & Irschik 2008].
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². In the geometrically exact beam,
+/// axial force and bending moment are linear in ε and κ [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
   static constexpr int curvature_power = 2;  ///< power k of |r′| in the bending measure
 

@@ -11,8 +11,8 @@ namespace polybody {
 ///   p |b − t₂|² + (1 − p) |c − t₃|²,  hence  t₂ = m/|m|,  m = p b + (1 − p) c × t₁.
 /// R is the identity if b = e₂ and c = e₃. The conditions for R are
 ///   b·t₁ = c·t₁ = 0,  p b·t₃ = (1 − p) c·t₂.
-/// A change d = (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. It rotates the frame by φ = S w in the axes
-/// of the frame. The variation of the three conditions gives
+/// A change d = (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. This change rotates the frame by φ = S w in
+/// the axes of the frame. The variation of the three conditions gives
 ///   (p b₂ + (1 − p) c₃) φ₁ = p X₃ − (1 − p) Y₂,  b₂ φ₃ − b₃ φ₂ = −X₁,  c₂ φ₃ − c₃ φ₂ = −Y₁.
 /// A second change of b and c, with the components ŵ = (X̂, Ŷ), rotates the frame by φ̂ = S ŵ. The components of a
 /// constant d then change by X × φ̂, Y × φ̂, and those of b, c by

@@ -12,8 +12,8 @@ using polybody::EngineeringStrain, polybody::GreenStrain;
 
 /// Theory of the planar `AncfCable` [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20]. The
 /// position field is a cubic Hermite polynomial with the coordinates (x, y, x′, y′) at each node. The mass matrix is
-/// constant. The cable has neither rotation coordinates nor rotary inertia. The template arguments set the numbers of
-/// Gauss points for axial strain and bending.
+/// constant. The cable has neither rotation coordinates nor rotary inertia. The template arguments are the strain
+/// measure and the numbers of Gauss points for axial strain and bending.
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";  ///< name of the body type in messages

@@ -102,7 +102,7 @@ class SectionFrame : public SectionAxes<T> {
     return s;
   }
   /// Matrix M(m), 6×6, of m·δ̂φ(w) = wᵀ M ŵ for a constant d with components w: the second derivative of the rotation.
-  /// It equals `pairing(pull(m), 1)` minus m₂ g in the first row.
+  /// M equals `pairing(pull(m), 1)` minus m₂ g (`sigma_gradient`) in the first row.
   M6 second(V3 const& m) const {
     T const along = m[2] + sigma_ * m[1];
     M6 h;
@@ -267,8 +267,8 @@ class SectionFrame : public SectionAxes<T> {
     g[5] = -sigma_;
     return g;
   }
-  /// Matrix A with s·δ̂w = wᵀ A ŵ for `sign` = 1; matrix L with δ̂w = L ŵ for w = s and `sign` = −1. Both are ∓ s̃ S
-  /// minus s times the relative change of the lengths β and c₃.
+  /// Matrix A with s·δ̂w = wᵀ A ŵ for `sign` = 1; matrix L with δ̂w = L ŵ for w = s and `sign` = −1. Both matrices are
+  /// ∓ s̃ S minus s times the relative change of the lengths β and c₃.
   M6 pairing(V6 const& s, double sign) const {
     M6 m;
     for (int part = 0; part < 2; ++part) {

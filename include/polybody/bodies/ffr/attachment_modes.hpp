@@ -55,7 +55,7 @@ MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigens
   std::vector<Index> const free = statically_determinate(s).free_coordinates(s);
   SparseFactor factor;
   factor_positive(factor, submatrix(s.stiffness, free, free),
-                  "parts of the supported structure move without strain. Connect them.");
+                  "parts of the structure can move relative to each other without strain. Connect these parts.");
   MatX shapes(s.size(), loads.cols() + count);
   if (loads.cols() > 0) {
     MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);

@@ -1,22 +1,23 @@
 #pragma once
 /// \file
-/// Structures made of bars: space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]. The code corrects
-/// errata of Eq. A.1: rows 11 and 12 contain −2ξ + 3ξ² and 2ξ − 3ξ². The intermediate element frames of Eqs. A.2–A.3
-/// permit any direction of an element.
+/// Structures made of bars: space beam element [thesis App. A; Przemieniecki 1968, §5.6, §11.4]. The code corrects
+/// errata of thesis Eq. A.1: the correct entries of its rows 11 and 12 are −2ξ + 3ξ² and 2ξ − 3ξ². The intermediate
+/// element frames of thesis Eqs. A.2–A.3 permit any direction of an element.
 
 #include <polybody/bodies/ffr/structure.hpp>
 #include <polybody/math/quadrature.hpp>
 
 namespace polybody {
 
-// Space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points,
-// in the axes of the body.
+// Space beam element [thesis App. A; Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points, in
+// the axes of the body.
 
-/// Shape functions of Eq. A.1 in the axes of the element, with nodal coordinates (u, v, w, θx, θy, θz) at both ends.
-/// The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is `rotation` e.
+/// Shape functions of thesis Eq. A.1 in the axes of the element, with nodal coordinates (u, v, w, θx, θy, θz) at both
+/// ends. The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is
+/// `rotation` e.
 struct BeamShapes {
   Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< y and z derivatives
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< ∂/∂y, ∂/∂z of (u, v, w)
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]
@@ -58,7 +59,7 @@ struct BeamShapes {
 /// Matrix with respect to the nodal coordinates of both ends of a beam, in the axes of the body.
 using BeamMatrix = Mat<double, 12, 12>;
 
-/// Transforms the columns of m from the axes of the element to those of the body: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+/// Transforms the columns of m from the axes of the element to those of the body: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ), C = `axes`.
 template <int rows>
 Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& axes) {
   Mat<double, rows, 12> out;
@@ -69,7 +70,8 @@ Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& a
     }
   return out;
 }
-/// Transforms the rows and columns of m from the axes of the element to those of the body: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+/// Transforms the rows and columns of m from the axes of the element to those of the body: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ),
+/// C = `axes`.
 template <class = void>
 Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
   Mat<double, 3, 12> const t = by_body_axes<3>(m, axes);
@@ -127,8 +129,8 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }
 }  // namespace detail
 
-/// Stiffness ∫ Bᵀ diag(c) B of a beam with the section stiffness c. Two Gauss points give the closed form of Eq. A.5
-/// [Przemieniecki 1968, Eq. 5.116 without shear].
+/// Stiffness ∫ Bᵀ diag(c) B of a beam with the section stiffness c. Two Gauss points give the closed form [thesis Eq.
+/// A.5; Przemieniecki 1968, Eq. 5.116 without shear].
 template <class = void>
 BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   BeamMatrix k = BeamMatrix::Zero();
@@ -156,8 +158,8 @@ BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double 
   return k;
 }
 
-/// Axes of the intermediate element frame of a beam along `direction`, by Eq. A.2, which keeps z normal to the y axis
-/// of the body. If the beam is parallel to the y axis of the body, Eq. A.3 applies.
+/// Axes of the intermediate element frame of a beam along `direction`, by thesis Eq. A.2. The z axis of the frame is
+/// normal to the y axis of the body. If the beam is parallel to the y axis of the body, thesis Eq. A.3 applies.
 /// \throws InvalidInput for a zero direction.
 template <class = void>  // compiled only if used
 Mat3 intermediate_axes(Vec3 const& direction) {
@@ -227,7 +229,8 @@ inline constexpr double same_node = 1e-9;
 /// Structure of `bars`, each divided into the number of elements given by `elements`, welded at common ends. The
 /// placements are in the axes of the body. The damping of the bars is Kelvin–Voigt damping. A pretension contributes
 /// its first-order force and its stiffness.
-/// \throws InvalidInput for no bar, fewer than one element, or a bar without torsional stiffness GJ.
+/// \throws InvalidInput for no bar, `elements` of another size than `bars`, fewer than one element, and a bar with
+/// invalid data or without torsional stiffness GJ.
 template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
@@ -288,7 +291,7 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
 }
 
 /// Structure of one bar in n equal elements, in the axes of the bar, with nodes 0 … n. The placement of the bar is
-/// omitted; use it as the placement of the body.
+/// omitted. Use this placement for the body.
 template <class = void>
 Structure structure_of(Bar bar, Index n) {
   bar.placement = {};
@@ -296,8 +299,8 @@ Structure structure_of(Bar bar, Index n) {
 }
 
 /// Geometric stiffness K_G = ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams. The axial forces N are due to a load on the
-/// structure, held at one node [Wallrapp & Schwertassek 1991]. eᵀ K_G e is twice the second-order work of the load: eᵀ
-/// K_G e = 2 Σ load · (displacement by axial foreshortening).
+/// structure, which is held at one node [Wallrapp & Schwertassek 1991]. The work of the load on the displacements by
+/// axial foreshortening is −½ eᵀ K_G e.
 class AxialForceStiffness {
  public:
   /// Holds all six coordinates of `node`.
@@ -322,8 +325,9 @@ class AxialForceStiffness {
                           " is held. Connect all bars at common ends, and give each bar positive stiffnesses."});
   }
 
-  /// Geometric stiffness due to one load. \param load (N) nodal forces [N], [N m] \param spread spread(beam) returns
-  /// the nodal forces (12, body axes) that are equivalent to the load within the beam
+  /// Geometric stiffness due to one load. \param load (N) all nodal forces [N], [N m], including those of `spread`
+  /// \param spread spread(beam) returns the nodal forces (12, body axes) that are equivalent to the load between the
+  /// nodes of the beam
   template <class Spread>
   Structure::Sparse operator()(VecX const& load, Spread&& spread) const {
     Structure const& s = *structure_;
@@ -342,7 +346,8 @@ class AxialForceStiffness {
         at_a += beam.axes(i, 0) * load_within[i];
         at_b += beam.axes(i, 0) * load_within[6 + i];
       }
-      // A load that is linear along the beam, p₀ + p₁ ξ, has f = l (p₀/2 + p₁/6) at a and l (p₀/2 + p₁/3) at b.
+      // A load that is linear along the beam, p₀ + p₁ ξ, has f = l (p₀/2 + p₁/6) at a and l (p₀/2 + p₁/3) at b. p0 and
+      // p1 are l p₀ and l p₁.
       double const p0 = 4.0 * at_a - 2.0 * at_b, p1 = 6.0 * (at_b - at_a);
       add_entries(beam, axial_force_stiffness(beam, n0, -p0, -0.5 * p1), entries);
     }

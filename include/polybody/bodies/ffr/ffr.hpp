@@ -40,8 +40,9 @@ class Ffr {
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
   /// Body of the bar in n elements, in mean axes, with geometric stiffening. The 6 n coordinates q are the
-  /// displacements and rotations of the nodes relative to the first end; the option `modes` reduces their number.
-  /// They are suitable for all joints: the frame needs no condition at a joint. The placement is that of the bar.
+  /// displacements and rotations of the nodes relative to the first end. The option `modes` reduces the number of
+  /// coordinates. The coordinates are suitable for all joints, because the frame needs no condition at a joint. The
+  /// placement is that of the bar.
   /// \throws InvalidInput for n < 1, and for a bar with invalid data or without torsional stiffness GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
@@ -90,8 +91,9 @@ class Ffr {
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// Section at the distance s along bar number `bar` from its first end, at (y, z) from the axis of the bar [m].
-  /// \throws InvalidInput for s outside the bar, and for a body that is not made of bars.
+  /// Point at the distance s along bar number `bar` (counted from 0) from its first end, at (y, z) from the axis of the
+  /// bar [m].
+  /// \throws InvalidInput for s outside the bar, a bar that does not exist, and a body that is not made of bars.
   template <class = void>
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     return made().at(s, y, z, bar);
@@ -241,7 +243,7 @@ class Ffr {
   }
 
   /// Marker kinematics: r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙
-  /// θ˙] with u¨ for q¨ = 0.
+  /// θ˙] with u¨ for q¨ = 0, where Jl is the left Jacobian of exp(θ̃).
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {
@@ -303,8 +305,8 @@ class Ffr {
     out.columns = 6 + n;
   }
 
-  /// Load stiffness: the derivative of Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with respect to q ⊞ δ, with F = Aᵀf and
-  /// N = Aᵀm.
+  /// Load stiffness: the derivative of Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with respect to δ of q ⊞ δ, with S =
+  /// ∂u/∂q, F = Aᵀf, N = Aᵀm and the right Jacobian Jr of exp(θ̃).
   template <class = void>
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     Index const n = deformations();

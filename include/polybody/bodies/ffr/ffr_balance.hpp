@@ -80,7 +80,7 @@ class FfrProducts {
 template <class T>
 class FfrBalance {
  public:
-  /// Balance with `products` evaluated at q.
+  /// Balance with `products` evaluated at q. All arguments must outlive this object.
   FfrBalance(FfrIntegrals const& integrals, FfrTerms const& terms, FfrProducts<T> const& products, std::span<T const> q)
       : of_(integrals),
         terms_(terms),

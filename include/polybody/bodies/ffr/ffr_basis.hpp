@@ -189,8 +189,9 @@ MatX fixed_interface_modes(Structure const& s, Index count,
 }
 
 /// Lowest `count` deformation modes of the free structure, computed by `solve`. The frame follows the mean motion:
-/// relative to it, momentum and angular momentum of the deformation vanish to first order (mean axes of Tisserand or
-/// Buckens).
+/// relative to this frame, momentum and angular momentum of the deformation vanish to first order (mean axes of
+/// Tisserand or Buckens).
+/// \param frame `none()`, with or without `restrict_to_plane()`
 /// \throws InvalidInput for a count above the number of these modes, and for a mass matrix that is not positive
 /// definite.
 template <class Eigensolver = DenseModes>
@@ -265,16 +266,16 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
   if (options.modes)
-    throw InvalidInput(
-        "ffr.modes",
-        {ErrorObject{"Ffr"}, ": the option `modes` applies to bodies from a bar. Give as many shapes instead."});
+    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"},
+                                     ": the option `modes` applies only to a body made from a bar. Give a basis with "
+                                     "this number of shapes instead."});
   return options.frame ? in_frame(s, std::move(shapes), *options.frame) : std::move(shapes);
 }
 
 /// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
 /// modes, computed by `solve`. The shapes use all coordinates, or those of the plane of x and y if `in_plane`. The
 /// frame is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` the frame follows the
-/// mean motion instead; the basis then consists of the free modes of the reduced model, without its rigid modes.
+/// mean motion instead. The basis then consists of the free modes of the reduced model, without the rigid ones.
 /// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
 /// frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
@@ -282,9 +283,10 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
                    bool in_plane = false, Eigensolver const& solve = {}) {
   std::size_t const different = std::set<Index>(boundary.begin(), boundary.end()).size();
   if (boundary.empty() || different != boundary.size())
-    throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"},
-                                        ": Craig-Bampton needs at least one boundary node and each node once, but has ",
-                                        boundary.size(), " boundary nodes, of which ", different, " are different."});
+    throw InvalidInput(
+        "ffr.boundary",
+        {ErrorObject{"Ffr"}, ": Craig-Bampton needs at least one boundary node, and no node twice, but there are ",
+         boundary.size(), " boundary nodes, ", different, " of them distinct."});
   if (!mean_axes && s.per_node != 6)
     throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"},
                                         ": without mean_axes, the boundary nodes must have rotations, but they have "
@@ -307,8 +309,9 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   for (std::size_t j = 0; j < outer.size(); ++j) shapes(outer[j], Index(j)) = 1.0;
   if (!inner.empty()) {
     SparseFactor factor;
-    factor_positive(factor, kii,
-                    "the stiffness with fixed boundary nodes is not positive definite. Connect all nodes to them.");
+    factor_positive(
+        factor, kii,
+        "the stiffness with fixed boundary nodes is not positive definite. Connect all nodes to boundary nodes.");
     MatX const follow = -factor.solve(MatX(submatrix(s.stiffness, inner, outer)));
     shapes.leftCols(Index(outer.size())) += scatter_rows(follow, inner, s.size());
     if (count > 0) {

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
-/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or the user provides them.
+/// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. The integrals
+/// of a structure follow from its inertia shape integrals by projection onto a basis, e = Φ q. A user can also provide
+/// the integrals.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 
@@ -42,8 +43,9 @@ void times(MatX const& m, T const* x, T* out) {
 
 }  // namespace detail
 
-/// Integrals of the body of a floating frame, in the axes of the frame. The points are u = u₀ + S q; geometric
-/// stiffening adds their axial foreshortening, which is quadratic in q, to u:
+/// Integrals of the body of a floating frame, in the axes of the frame. The points are u = u₀ + S q. Geometric
+/// stiffening adds axial foreshortening, which is quadratic in q, to u. [x_k]_k is the vector or matrix with the
+/// entries x_k:
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
 ///   J(q) = inertia + [inertia_by_kl · q + qᵀ inertia_second_kl q]_kl, the inertia tensor about the origin,
 ///   H(q) = ∫ρ ũ ∂u/∂q with the rows H_i = coupling_i + qᵀ coupling_by_i,

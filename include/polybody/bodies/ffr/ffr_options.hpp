@@ -10,8 +10,8 @@ namespace polybody {
 
 /// Terms of the equations of a floating frame, for the simplifications of thesis §4.3.2 and §4.3.4. A switch that is
 /// false omits all of its terms. The letters c, J, H and C are those of ffr.hpp. If only `onto_frame` is false, the
-/// mass matrix is not symmetric. The linear solver must then read both triangles, as in `BlockSolver`; `BlockLdlt`
-/// and `EigenLdlt` read one.
+/// mass matrix is not symmetric. The linear solver must then read both triangles. `BlockSolver` reads both triangles,
+/// `BlockLdlt` and `EigenLdlt` only one.
 struct FfrTerms {
   bool coupling = true;  ///< m_rf: C and H in the mass matrix; ċ, Ċ q̇, H q̇ and H˙ q̇ in the rows of the frame
   bool onto_frame =
@@ -22,7 +22,7 @@ struct FfrTerms {
   bool coriolis = true;          ///< 2 S̃₁ q̇: Coriolis forces on the deformation
   bool centrifugal = true;       ///< S̃₂ q: centrifugal forces that are linear in the deformation, and their geometric
                                  ///< stiffening if it is selected
-  bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the undeformed body
+  bool spin = true;              ///< centrifugal forces on the undeformed body, Ĩ_o ω̄ of the thesis
 
   bool operator==(FfrTerms const&) const = default;  ///< compares all switches
   /// First moment c of the body with the integrals `of`: at q = x if `deformed_inertia`, otherwise at q = 0.
@@ -43,9 +43,9 @@ struct FfrTerms {
   }
 };
 
-/// Frames to which the deformation of a body refers. The deformation excludes one rigid motion of the structure, and
-/// the frame has that motion [Shabana 2020, ch. 5; Agrawal & Shabana 1986]. The undeformed body has the same placement
-/// in all frames.
+/// Frames to which the deformation of a body refers. Each frame follows one rigid motion of the structure, and the
+/// deformation is relative to this motion [Shabana 2020, ch. 5; Agrawal & Shabana 1986]. The undeformed body has the
+/// same placement in all frames.
 enum class FfrFrame {
   mean_axes,         ///< mean motion: momentum and angular momentum of q̇ relative to the frame vanish at q = 0
   clamped,           ///< motion of the first node, whose displacement and rotation vanish

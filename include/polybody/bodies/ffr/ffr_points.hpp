@@ -175,7 +175,8 @@ class FfrPoints {
                          {ErrorObject{"Ffr"}, ": only a body made of bars has a length. Use node(i) for a point."});
     return s_.bar_lengths.front();
   }
-  /// Point at the distance s along bar number `bar` from its first end, at (y, z) from the axis of the bar [m].
+  /// Point at the distance s along bar number `bar` (counted from 0) from its first end, at (y, z) from the axis of the
+  /// bar [m].
   /// \throws InvalidInput for s outside the bar, and for a bar that does not exist.
   template <class = void>
   FfrPoint at(double s, double y, double z, Index bar) const {
@@ -231,7 +232,7 @@ class FfrPoints {
     return p;
   }
 
-  /// Point `at` of the undeformed structure, fixed to the mean motion of a patch of its nodes.
+  /// Point `at` of the undeformed structure [m] that follows the mean motion of a patch of its nodes.
   /// \throws InvalidInput with geometric stiffening.
   template <class = void>
   FfrPoint patch(NodePatch const& nodes, Vec3 const& at) const {

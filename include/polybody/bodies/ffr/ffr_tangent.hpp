@@ -11,7 +11,7 @@
 namespace polybody {
 
 /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v) of `Ffr::force` f, term by term. J and H are differentiated explicitly with
-/// respect to q. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇, the derivatives in the rows of r are
+/// respect to q. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇, the derivatives of −f in the rows of r are
 ///   with respect to the rotation of the frame −A w̃,
 ///   with respect to Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),
 ///   with respect to q  A (Ω̃² C + 2 Ω̃ ċ_q).

@@ -49,12 +49,12 @@ void require_symmetric(Structure::Sparse const& m, Index n, std::string const& n
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
       if (!(std::abs(it.value()) <= largest_number))
         throw InvalidInput("value.not_finite", {ErrorObject{"Structure"}, ": ", name, non_finite_suffix(it.value()),
-                                                " in ", entry_name(it.row(), j), ". Write the matrices again."});
+                                                " in ", entry_name(it.row(), j), ". Export the matrices again."});
       double const other = turned.coeff(it.row(), j);
       if (!(std::abs(it.value() - other) <= least))
         throw InvalidInput("structure.not_symmetric",
                            {ErrorObject{"Structure"}, ": ", name, " is not symmetric: ", entry_name(it.row(), j),
-                            " is ", ErrorValue{it.value()}, ", its mirror image ", other,
+                            " is ", ErrorValue{it.value()}, ", but its mirror image is ", other,
                             ". If a matrix is stored as one triangle, give both triangles."});
     }
   }
@@ -97,7 +97,7 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
     if (!(factor.vectorD()[k] > 1e-13 * largest))
       throw InvalidInput(
           "structure.mass",
-          {ErrorObject{"Structure"}, ": the mass matrix is not positive definite; it fails at node ",
+          {ErrorObject{"Structure"}, ": the mass matrix is not positive definite; its factorisation fails at node ",
            factor.permutationPinv().indices()[k], ". Every node needs mass: omit nodes that belong to no element."});
   return m;
 }
@@ -119,11 +119,12 @@ void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<
     if (force.norm() <= 1e-6 * norm * shape.norm()) continue;
     Index worst = 0;
     force.cwiseAbs().maxCoeff(&worst);
-    throw InvalidInput("structure.rigid_motion",
-                       {ErrorObject{"Structure"}, ": a rigid ", motion < 3 ? "displacement along " : "rotation about ",
-                        "xyz"[motion % 3], " strains the structure, most in row ", coordinate_name(worst),
-                        " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
-                        "stiffness, and fix nothing in the finite element model."});
+    throw InvalidInput(
+        "structure.rigid_motion",
+        {ErrorObject{"Structure"}, ": a rigid ", motion < 3 ? "displacement along " : "rotation about ",
+         "xyz"[motion % 3], " strains the structure, most in row ", coordinate_name(worst),
+         " of the stiffness matrix. Give the nodes in the order of the matrices and in the unit of length "
+         "of the stiffness, and fix no displacement in the finite element model."});
   }
 }
 
@@ -147,8 +148,8 @@ double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness
 }
 
 /// Checks the wave speed of a structure.
-/// \throws InvalidInput for a wave speed above `fastest` [m/s], for example with nodes in millimetres. Rigid motions do
-/// not reveal a wrong unit of length, but the wave speed is proportional to it.
+/// \throws InvalidInput for a wave speed above `fastest` [m/s], for example with nodes in millimetres. A wrong unit of
+/// length does not affect the check of rigid motions, but multiplies the wave speed.
 template <class = void>
 void require_units_of_solids(double speed, double fastest) {
   if (!(speed > fastest) || !std::isfinite(speed)) return;

@@ -23,9 +23,9 @@ std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double dista
 ///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
 class NodePatch {
  public:
-  /// Displacement (3×n) and small rotation (3×n) of a point.
+  /// Displacement [m] and small rotation [rad] of a point for each unit deformation coordinate.
   struct Motion {
-    Mat<double, 3, Eigen::Dynamic> displacement, rotation;  ///< in the axes of the structure
+    Mat<double, 3, Eigen::Dynamic> displacement, rotation;  ///< (3×n), in the axes of the structure
   };
 
   /// Patch of `nodes`.

@@ -20,7 +20,7 @@ class NumberReader {
  public:
   /// Remaining text of a line without leading and trailing blanks, such as a name after numbers.
   struct Rest {
-    std::string text;  ///< text without these blanks; may be empty
+    std::string text;  ///< text without these blanks; a line without this text is refused
   };
 
   /// Opens a file in which `comment` begins a comment.

@@ -33,6 +33,7 @@ class Ffr : public AddingCoordinates {
 
   /// Body of the bar in n elements, in mean axes, with geometric stiffening. It has 3 n coordinates q, like
   /// `polybody::Ffr` without the motions out of the plane. The bar needs no GJ.
+  /// \throws InvalidInput for n < 1, for a bar with invalid data, and for a placement that leaves the plane.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.complete_for(bar.placement);
@@ -44,8 +45,7 @@ class Ffr : public AddingCoordinates {
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
-  /// Structure of a bar with n elements, for use in the plane only.
-  /// \throws InvalidInput for n < 1, and for a bar with invalid data.
+  /// Structure of a bar with n elements, for use in the plane only. \throws InvalidInput for n < 1 or invalid data.
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
@@ -65,10 +65,9 @@ class Ffr : public AddingCoordinates {
             options) {
     for (Index i = 0; i < shapes.rows(); ++i)
       if (int const c = int(i) % structure.per_node; c >= 2 && c < 5 && !shapes.row(i).isZero(0.0))
-        throw InvalidInput(
-            "ffr.out_of_plane",
-            {ErrorObject{"planar::Ffr"},
-             ": the shapes of the basis move nodes out of the plane. Make the basis with in_plane = true."});
+        throw InvalidInput("ffr.out_of_plane", {ErrorObject{"planar::Ffr"},
+                                                ": the shapes of the basis move nodes out of the plane. Make the basis "
+                                                "with in_plane = true or restrict_to_plane()."});
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// Body from integrals that the user computes.
@@ -88,7 +87,8 @@ class Ffr : public AddingCoordinates {
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// Point at the distance s along bar number `bar` from its first end, and y from the axis of the bar [m].
+  /// Point at the distance s along bar number `bar` (counted from 0) from its first end, and y from the axis [m].
+  /// \throws InvalidInput for s outside the bar, a bar that does not exist, and a body that is not made of bars.
   template <class = void>
   Point at(double s, double y = 0.0, Index bar = 0) const {
     return made().at(s, y, 0.0, bar);

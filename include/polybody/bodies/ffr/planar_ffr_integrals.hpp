@@ -7,8 +7,8 @@
 namespace polybody::planar {
 
 /// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame. The
-/// points are u = u₀ + S q; geometric stiffening adds their axial foreshortening, which is quadratic in q, to u. With
-/// C = ∂c/∂q and the unit normal e of the plane:
+/// points are u = u₀ + S q. Geometric stiffening adds axial foreshortening, which is quadratic in q, to u. With C =
+/// ∂c/∂q and the unit normal e of the plane:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
 ///   H = ∫ρ u × ∂u/∂q = coupling + qᵀ coupling_by,
 ///   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.

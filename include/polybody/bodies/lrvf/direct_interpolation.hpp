@@ -15,9 +15,9 @@ namespace polybody {
 /// - The policy is not objective. The curvature and the energy of an element that bends by φ about one axis change if
 ///   the element rotates rigidly about another axis. The relative changes are of order φ²: 0.01 φ² for the energy after
 ///   a rotation of 2 rad.
-/// - The rotation vector Ψ₁ of node 1 has |Ψ₁| ≤ π. Ψ₂ is the rotation vector Ψ of node 2 or its complement
-///   Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1 passes |Ψ₁| = π, both vectors change to their complements. The
-///   curvature then jumps by terms of order φ³/l, unless the element rotates about Ψ itself.
+/// - The rotation vector Ψ₁ of node 1 has |Ψ₁| ≤ π. For node 2, the rotation vector Ψ and its complement Ψ (1 − 2π/|Ψ|)
+///   describe the same rotation. Ψ₂ is the one that is nearer to Ψ₁. If node 1 passes |Ψ₁| = π, both vectors change to
+///   their complements. The curvature then jumps by terms of order φ³/l, unless the element rotates about Ψ itself.
 class Direct {
  public:
   static constexpr bool objective = false;

@@ -11,8 +11,8 @@ namespace polybody {
 /// Linear interpolation of directors, dᵢ(ξ) = (1 − ξ) dᵢ(0) + ξ dᵢ(1) [Romero & Armero 2002; Betsch & Steinmann 2002].
 /// The directors are the columns of Λ = (1 − ξ) R₁ + ξ R₂. Between the nodes Λ is not a rotation matrix. The strains
 /// follow from the directors:
-///   Γᵢ = dᵢ·r′ − Γ₀,  Kᵢ = ½ εᵢⱼₖ dₖ·dⱼ′ − K₀;  here K = sin φ/l n in every section,
-///   with the axis n of the relative rotation of the nodes.
+///   Γᵢ = dᵢ·r′ − Γ₀ᵢ,  Kᵢ = ½ εᵢⱼₖ dₖ·dⱼ′ − K₀ᵢ.
+/// If node 2 is rotated relative to node 1 by φ about the axis n, K + K₀ = sin φ/l n in every section.
 /// The policy is objective, and its strains do not depend on the path. In an element that bends by φ, the directors
 /// normal to n are shorter than one: in the middle their length is cos(φ/2). Γ is reduced accordingly. The bending
 /// energy ½ EI sin²φ/l is largest at φ = π/2: an element with a larger angle is driven to φ = π, at which its energy is
@@ -32,8 +32,9 @@ struct DirectorSection {
 }  // namespace detail
 
 /// Elements with interpolated directors. With δΓ = Λᵀ δr′ + (1 − ξ) (R₁ᵀr′) × δθ₁ + ξ (R₂ᵀr′) × δθ₂ and δ(l K) = δu
-/// (`RelativeTurn`), the forces are f_r = ± l/c₀ Λ N,  f_θ = −(l Hᵀ N + δuᵀ M). The tangents are the derivatives of the
-/// forces by dual numbers.
+/// (`RelativeTurn`), the forces are f_r = ± l/c₀ Λ N,  f_θ = −(l Hᵀ N + Uᵀ M), with H of `DirectorSection` and U =
+/// `by_u` of `RelativeTurn`. The upper sign is that of node 1. The tangents are the derivatives of the forces by dual
+/// numbers.
 template <StrainQuadrature Quadrature>
 class ElasticElements<Directors, Quadrature> {
  public:
@@ -93,7 +94,7 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i < count; ++i) sum += sections_[std::size_t(i)].energy(strains(i, e, q));
     return l_ * sum;
   }
-  /// Strains (Γ, K) in the middle of element e, in its axes [1], [1/m].
+  /// Strains (Γ, K) in the middle of element e, components along the directors [1], [1/m].
   Vec6 strains(Index e, std::span<double const> q) const { return strains(count, e, q); }
 
  private:

@@ -97,6 +97,7 @@ class LrvfSection {
   /// R of the section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R (δN + ck Pθ × N), −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
+  /// The upper sign is that of node 1.
   template <class T>  // compiled only if used
   void tangent(SectionStrains<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
     Slopes<T> const by_state = slopes(s, by, ck, cd);
@@ -218,8 +219,9 @@ struct FreeStrain {
 
 }  // namespace detail
 
-/// Elastic elements in which the axes of every section, also between the nodes, are a rotation matrix. If the
-/// quadrature has one point, all code is specialised for the middle.
+/// Elastic elements of interpolations in which the axes of every section form a rotation matrix. The specialisation for
+/// `Directors` has other axes. For the section in the middle, the class calls `middle` and `gradient` of the
+/// interpolation.
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class ElasticElements {
  public:
@@ -246,7 +248,7 @@ class ElasticElements {
   /// Force of element e from the virtual work l Σ w (N·δΓ + M·δK). With δθ₁₂ = (δθ₁, δθ₂), δθ = P δθ₁₂, δK = Q δθ₁₂/l
   /// and δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, where Γ includes Γ₀, the sums over the points are
   ///   f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M),  t = l N × Γ.
-  /// The function also adds moment(i), the moment of the inertia forces on node i.
+  /// The upper sign is that of node 1. The function also adds moment(i), the moment of the inertia forces on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     point_force<0, T>(e, q, v, moment, out);
@@ -283,7 +285,8 @@ class ElasticElements {
 
  private:
   static constexpr int count = int(Quadrature::points.size());
-  /// Index of the point in the middle; if the quadrature has none, this is an additional point after the others.
+  /// Index of the point in the middle. If the quadrature has no such point, this index is that of an additional point
+  /// after the others.
   static constexpr int middle = [] {
     for (int i = 0; i < count; ++i)
       if (Quadrature::points[i].xi == 0.5) return i;

@@ -25,7 +25,7 @@ namespace polybody {
 ///   order in the step, for every integrator.
 /// - The policy is not objective. If an element bent by φ about n rotates rigidly with ω ⊥ n, its middle rotates with
 ///   cos(φ/2) ω. The rate of l K is then (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
-/// User-defined coordinates must include the section in the middle; q ⊞ δ computes it.
+/// Coordinates q that a user sets must include R and l K of the middle of each element. q ⊞ δ computes R and l K.
 class Incremental {
  public:
   static constexpr bool objective = false;
@@ -104,7 +104,7 @@ class Incremental {
     if (xi != 0.0 && xi != 1.0 && !(xi > 0.5 - 1e-12 && xi < 0.5 + 1e-12))
       throw InvalidInput("lrvf.no_rotation",
                          {ErrorObject{"Lrvf<Incremental>"}, ": the rotation at s = ", ErrorValue{s},
-                          " m is unknown. It is known at the nodes and at the middle of each element only."});
+                          " m is unknown. Place the marker at a node or in the middle of an element."});
   }
 };
 

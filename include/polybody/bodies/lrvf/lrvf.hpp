@@ -14,9 +14,11 @@ namespace polybody {
 /// Geometrically exact beam, a chain of equal two-node elements [Reissner 1981; Simo & Vu-Quoc 1986b; thesis §2.3–2.5].
 /// Positions are interpolated linearly, and rotations by the policy `Interpolation` (rotation_interpolation.hpp). The
 /// policy `Quadrature` (strain_quadrature.hpp) defines the points at which strains are evaluated. The default is one
-/// point in the middle of the element, which avoids shear locking. With the rotation R of this section,
+/// point in the middle of the element, which avoids shear locking. With the rotation R of the section at such a point,
+/// and axial(ã) = a,
 ///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
-/// in the axes of the section, with x along the beam; Γ₀, K₀ are the strains of the reference configuration.
+/// in the axes of the section, with x along the beam. Γ₀ and K₀ are the values of Rᵀ r′ and axial(Rᵀ R′) in the
+/// reference configuration.
 ///
 /// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. The
 /// generalised velocities of a node are ṙ (3) and Ω (3), the angular velocity in the axes of the section. q ⊞ δ acts on
@@ -24,13 +26,13 @@ namespace polybody {
 /// stored sections, one for each element, follow after those of the nodes.
 ///
 /// The mass of the translation is consistent with the linear shapes, Aρ l/6 [2 1; 1 2]. The rotary inertia is lumped at
-/// the nodes, J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular,
-/// and the rotations follow the positions without delay. Implicit methods and statics permit a singular M, explicit
-/// methods do not.
+/// the nodes, J = ½ l diag(Iρ_x, Iρ_y, Iρ_z) with `rotary_inertias`, so that M is constant. Without any rotary inertia
+/// M is singular, and the moments on each node are in equilibrium at every time. Implicit methods and statics permit a
+/// singular M, explicit methods do not.
 ///
-/// A curved reference is divided into n elements of arc length l whose nodes lie on the curve. With the chord c₀ of an
-/// element in the reference, r′ = (r₂ − r₁)/c₀, and K = axial(Rᵀ R′) with respect to l. Uniform stretch and uniform
-/// bending of a circular arc are then exact. Integrals extend over l.
+/// A curved reference is divided into n elements of arc length l whose nodes lie on the curve. r′ is (r₂ − r₁)/c₀, with
+/// the chord c₀ of the element in the reference. R′ is the derivative with respect to the arc length. Uniform stretch
+/// and uniform bending of a circular arc are then exact. Integrals extend over l.
 template <RotationInterpolation Interpolation = RelativeRotation, StrainQuadrature Quadrature = ReducedQuadrature>
 class Lrvf {
  public:
@@ -63,14 +65,16 @@ class Lrvf {
   static Lrvf from(Bar const& bar, BarMesh const& mesh = {}) {
     return from(bar, mesh.elements.value_or(default_elements));
   }
-  /// Beam of n elements with the stress-free shape `curve`, bent and twisted, whose parameter is its arc length.
+  /// Beam of n elements whose undeformed shape is `curve`, bent and twisted, free of stress except for the pretension.
+  /// The parameter of the curve is its arc length.
   /// \throws InvalidInput for n < 1, for a missing stiffness (GA, GJ, ...), and for a curve on which nodes coincide or
   /// are farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     if (!curve)
-      throw InvalidInput("reference_curve.missing",
-                         {ErrorObject{"Lrvf"}, ": the reference curve is an empty function."});
+      throw InvalidInput("reference_curve.missing", {ErrorObject{"Lrvf"},
+                                                     ": the reference curve is an empty function. Pass a function that "
+                                                     "returns a Placement for each arc length s."});
     return Lrvf(bar, polybody::constants(bar), n, curve);
   }
 
@@ -78,8 +82,8 @@ class Lrvf {
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// Section at arc length s of the reference [m], at (y, z) from the axis of the section [m].
-  /// \throws InvalidInput for s outside the bar.
+  /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
+  /// \throws InvalidInput for s outside the bar. With `Incremental` s must be a node or the middle of an element.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, length_, "Lrvf") / l_;
     require_finite(y, "Lrvf: y of a point");
@@ -254,8 +258,8 @@ class Lrvf {
     out.columns = 12;
   }
 
-  /// Load stiffness: the derivative of Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], with c = ρ̃ F + M, F = Rᵀf, M = Rᵀm. With
-  /// δF = F̃ P δθ,
+  /// Load stiffness: the derivative of Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], with c = ρ̃ F + M, ρ = (0, y, z), F = Rᵀf,
+  /// M = Rᵀm. With δF = F̃ P δθ,
   ///   δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
   template <class T = double>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {

@@ -176,7 +176,7 @@ using Lrvf = LrvfBy<ReducedQuadrature>;
 /// is too large by the factor 1 + GA l²/(12 EI) [Hughes, Taylor & Kanoknukulchai 1977].
 using FullLrvf = LrvfBy<FullQuadrature>;
 
-/// Planar beam with ε and γ evaluated in the middle, κ at both Gauss points. θ is linear and κ is constant in an
+/// Planar beam with ε and γ evaluated in the middle, and κ at both Gauss points. θ is linear and κ is constant in an
 /// element. The results therefore equal those of `Lrvf` to round-off, at a higher cost. Selective and reduced
 /// quadrature of the literature coincide for this beam.
 using SelectiveLrvf = LrvfBy<SelectiveQuadrature>;

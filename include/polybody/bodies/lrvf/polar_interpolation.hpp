@@ -42,9 +42,10 @@ struct RelativeTurn {
 }  // namespace detail
 
 /// Interpolation in which R(ξ) is the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4].
-/// The axis n of the relative rotation is that of `RelativeRotation`; the angle differs. In the plane normal to n, the
-/// mean of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
-///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
+/// The sections rotate from node 1 about the axis n of the relative rotation of the nodes, as with `RelativeRotation`.
+/// The angle α of a section differs from ξφ, with the angle φ of the relative rotation. In the plane normal to n, the
+/// weighted mean of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}. Hence
+///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = dα/dξ n = u/ρ²,
 /// with u = sin φ n, s = sin²(φ/2). The policy is objective, and its strains do not depend on the path. The difference
 /// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `RelativeRotation`, and l K =
 /// 2 tan(φ/2) n. The relative rotation of an element must be less than π.
@@ -131,8 +132,8 @@ class Polar {
       for (int j = 0; j < 6; ++j)
         for (int k = 0; k < 6; ++k) out(j, k) += x[i] * moved.spin(i, j).d[k];
   }
-  /// Rotation R with the curvature K and K′ = −u (ρ²)′/(ρ⁴ l²), (ρ²)′ = −4 (1 − 2ξ) s, at ξ of an element of length l
-  /// [m].
+  /// Rotation R with the curvature K and K′ = −u d(ρ²)/dξ/(ρ⁴ l²), d(ρ²)/dξ = −4 (1 − 2ξ) s, at ξ of an element of
+  /// length l [m].
   template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     detail::RelativeTurn<T> const turn(a, b);

@@ -103,6 +103,7 @@ concept PathDependentInterpolation =
       i.require_known(0.5, 0.65);  // for a marker at ξ, at distance s along the bar
     };
 
+/// Policy of `Lrvf` for the rotations of the sections within an element.
 template <class I>
 concept RotationInterpolation =
     (NodalInterpolation<I> || PathDependentInterpolation<I>) && std::constructible_from<I, Placement> &&

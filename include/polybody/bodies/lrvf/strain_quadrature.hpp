@@ -63,16 +63,17 @@ constexpr bool alike(double StrainPoint::* a, double StrainPoint::* b) {
 
 }  // namespace detail
 
+/// Quadrature rule along an element: `Q::points` (`StrainPoint`), with weights that add up to one for each strain.
 template <class Q>
 concept StrainQuadrature = requires { requires detail::is_rule(Q::points); };
 
-/// All strains evaluated in the middle; the element does not lock.
+/// All strains are evaluated in the middle of the element, which does not lock.
 struct ReducedQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
 
-/// All strains evaluated at both Gauss points, for comparison. The element locks. If the sections of the two nodes
+/// All strains are evaluated at both Gauss points, for comparison. The element locks. If the sections of the two nodes
 /// differ by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord. This angle acts as a
 /// shear strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
 struct FullQuadrature {
@@ -81,15 +82,17 @@ struct FullQuadrature {
       {{gauss<2>[0].xi, 0.5, 0.5, 0.5}, {gauss<2>[1].xi, 0.5, 0.5, 0.5}}};
 };
 
-/// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear must be
-/// evaluated in the middle, because Γ₁ = u′ is constant. In general Γ₁ must be evaluated there as well. At Gauss
-/// points, sections are inclined to the chord by ψ ± φ/√12, with the shear ψ, and Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
+/// Γ is evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear must be
+/// evaluated in the middle, because Γ₁ = u′ is constant. In general Γ₁ must be evaluated in the middle as well. If the
+/// sections of the two nodes differ by the angle φ, those of the Gauss points are inclined to the chord by ψ ± φ/√12,
+/// with the shear ψ, and Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
 /// - The mean of Γ₁ over both points decreases by φ²/24 under pure bending. The chord becomes longer by the same
 ///   fraction, whereas the chord of an arc of constant length becomes shorter.
 /// - The difference of Γ₁ between both points, 2 sin ψ sin(φ/√12), depends on ψ: it adds EA φ²/12 to GA. On a curved
-///   reference this also occurs in linear theory, with the angle φ₀ of the reference per element.
-/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. The results then equal those
-/// of `ReducedQuadrature`; in space the cost is five to ten times higher.
+///   reference this stiffening also occurs in linear theory, with the angle φ₀ between the sections of the nodes in the
+///   reference.
+/// With `RelativeRotation` K is constant in the element, and in the planar beam κ is constant. In these cases the
+/// results equal those of `ReducedQuadrature`, and in space the cost is five to ten times higher.
 struct SelectiveQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 3> points = {

@@ -48,8 +48,8 @@ class Rigid : public AddingCoordinates {
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
-  /// Rigid body of the bar; its origin is the middle of the bar. The mesh has no effect.
-  /// \throws InvalidInput for a mesh of less than one element.
+  /// Rigid body made from `bar`. The origin of the body is the middle of the bar. The mesh has no effect.
+  /// \throws InvalidInput for a mesh of less than one element, or a placement that leaves the plane.
   template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar, BarMesh const& mesh = {}) {
     require_elements(mesh.elements.value_or(1), "planar::Rigid");
@@ -67,8 +67,10 @@ class Rigid : public AddingCoordinates {
   template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0) const {
     if (length_ == 0.0)
-      throw InvalidInput("rigid.no_bar",
-                         {ErrorObject{"planar::Rigid"}, ": at(s) needs a body made from a Bar. Use at(Vec2)."});
+      throw InvalidInput(
+          "rigid.no_bar",
+          {ErrorObject{"planar::Rigid"},
+           ": at(s) needs a body made from a Bar. Use at(u) with the vector u from the centre of mass."});
     return at(Vec2(require_inside(s, length_, "planar::Rigid") - 0.5 * length_, y));
   }
   /// Point u in body axes from the centre of mass [m].

@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Returns true if A + shift·1 has positive pivots.
+/// Returns true if the symmetric matrix a + shift·1 is positive definite, that is, if all its pivots are positive.
 template <class = void>  // compiled only if used
 bool is_definite(Mat3 const& a, double shift) {
   double const d0 = a(0, 0) + shift, l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
@@ -40,8 +40,9 @@ std::array<double, 3> principal_values(Mat3 const& a) {
 }  // namespace detail
 
 /// Requires an inertia tensor that a distribution of mass can have.
-/// \throws InvalidInput, with a message that begins with `what`, unless `inertia` is symmetric, no principal moment is
-/// negative, and none exceeds the sum of the other two: ½ tr(J) 1 − J ⪰ 0.
+/// \throws InvalidInput, with a message that begins with `what`, unless `inertia` J is finite and symmetric, no
+/// principal moment is negative, and none exceeds the sum of the other two (½ tr(J) 1 − J ⪰ 0). The tolerance is 1e-9
+/// of the largest entry.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what, ": the inertia");
@@ -101,6 +102,7 @@ class RigidShape {
     placement_.check("Rigid");
   }
   /// Body with `mass` [kg] and `inertia` about the centre of mass, in body axes [kg m²].
+  /// \throws InvalidInput for mass ≤ 0, an inertia tensor that no distribution of mass has, or an invalid placement.
   template <class = void>  // compiled only if used
   RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
       : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
@@ -115,7 +117,8 @@ class RigidShape {
     if (length_ == 0.0)
       throw InvalidInput(
           "rigid.no_bar",
-          {ErrorObject{"Rigid"}, ": at(s) needs a body made from a Bar. Use at(Vec3) from the centre of mass."});
+          {ErrorObject{"Rigid"},
+           ": at(s) needs a body made from a Bar. Use at(u) with the vector u from the centre of mass."});
     return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
   }
   /// Point u in body axes from the centre of mass [m].
@@ -132,7 +135,7 @@ class RigidShape {
   Index first_column(Point const&) const { return 0; }
 
  protected:
-  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar.
+  /// Rigid body made from `bar`. The axes of the body are those of the bar, and its origin is the middle of the bar.
   template <class = void>  // compiled only if used
   explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) {
     length_ = bar.length;
@@ -164,8 +167,8 @@ class RigidShape {
   Vec<T, 3> axis_of_inertia(int j) const {
     return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
   }
-  /// Writes a × b to three entries of `out`, beginning at `first`. Eigen's cross product stores its result in memory
-  /// and then waits for this store.
+  /// Writes a × b to three entries of `out`, beginning at `first`. Eigen's cross product is slower, because it stores
+  /// its result in memory and waits for this store.
   template <class A, class B, class Out>
   static void set_cross(A const& a, B const& b, Out& out, int first) {
     out[first] = a[1] * b[2] - a[2] * b[1];
@@ -202,8 +205,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
-  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar. The
-  /// mesh has no effect.
+  /// Rigid body made from `bar`. The axes of the body are those of the bar, and its origin is the middle of the bar.
+  /// The mesh has no effect.
   /// \throws InvalidInput for a mesh of less than one element.
   template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar, BarMesh const& mesh = {}) {
@@ -286,7 +289,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// Tangent cd (−∂f/∂Ω) with −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  /// Tangent cd (−∂f/∂Ω) with −∂f/∂Ω = Ω̃ J − (J Ω)~, where x~ is the skew-symmetric matrix of x.
   template <class T>  // compiled only if used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]);
@@ -322,7 +325,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// Kinematics that all points of the body share.
   template <StateScalar T>
   struct Pose {
-    Vec<T, 3> r, v, w;  ///< position, velocity and angular velocity of the body, at the centre of mass, in world axes
+    Vec<T, 3> r, v, w;  ///< centre of mass: position [m], velocity [m/s]; angular velocity [rad/s]; world axes
     Mat<T, 3, 3> A;     ///< rotation matrix from body to world axes
   };
 
@@ -367,8 +370,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
     evaluate_marker(p, axes, at, out);
   }
 
-  /// Load stiffness, the derivative of Jᵀw = [f; Aᵀm + u × Aᵀf]. For A ⊞ δ, δ(Aᵀm) = (Aᵀm)~ δ. The block of the
-  /// rotation is therefore (Aᵀm)~ + ũ (Aᵀf)~.
+  /// Load stiffness, the derivative of Jᵀw = [f; Aᵀm + u × Aᵀf]. A rotation A ⊞ δ changes Aᵀm by (Aᵀm)~ δ, with the
+  /// skew-symmetric matrix x~ of x. The block of the rotation is therefore (Aᵀm)~ + ũ (Aᵀf)~.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
     Mat<T, 3, 3> const a = rotation_matrix<T>({q[3], q[4], q[5], q[6]});

@@ -10,9 +10,9 @@ namespace polybody {
 /// Rotation of `Rigid` as four Euler parameters, with their rates as generalised velocities.
 struct EulerParameters {};
 
-/// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. The coordinates are (r, θ),
-/// θ = (θ₀, θ₁, θ₂, θ₃), and the generalised velocities are their rates, seven of each. The body has the constraint
-/// equation ½ (θᵀθ − 1) = 0. With
+/// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. The seven coordinates are
+/// (r, θ), with the centre of mass r in world axes [m] and θ = (θ₀, θ₁, θ₂, θ₃). The seven generalised velocities are
+/// the rates of the coordinates. The body has the constraint equation ½ (θᵀθ − 1) = 0. With
 ///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
 /// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c; hence
 ///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
@@ -28,8 +28,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
-  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar. The
-  /// mesh has no effect.
+  /// Rigid body made from `bar`. The axes of the body are those of the bar, and its origin is the middle of the bar.
+  /// The mesh has no effect.
   /// \throws InvalidInput for a mesh of less than one element.
   template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar, BarMesh const& mesh = {}) {

@@ -16,9 +16,9 @@ namespace polybody {
 ///     VariableMass<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
 ///
 /// The equation M(t) v̇ = f is valid if mass leaves or arrives with the velocity of the body at that point. Mass that
-/// leaves with another velocity exerts a force on the body: −ṁ u for a stream of ṁ [kg/s] at u [m/s] relative to the
-/// body. Apply this force with a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are
-/// computed with the mass at the time of the state.
+/// leaves with another velocity exerts a force on the body: −ṁ u for an outflow ṁ > 0 [kg/s] with the velocity u [m/s]
+/// relative to the body. Apply this force with a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch.
+/// 1]. Energies are computed with the mass at the time of the state.
 template <Body B>
 class VariableMass : public B {
   static_assert(HasRigidLayout<B>,

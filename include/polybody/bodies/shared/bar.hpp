@@ -58,8 +58,8 @@ struct Damping {
   double bending = 0.0;  ///< damping time of the curvatures [s]
 };
 
-/// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. Its
-/// data are either `section` and `material`, or `constants`.
+/// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. The
+/// data of the bar are either `section` and `material`, or `constants`.
 struct Bar {
   Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar has `constants`

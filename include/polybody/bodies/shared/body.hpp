@@ -36,7 +36,8 @@ enum class RigidLayout : unsigned char {
   plane        ///< (x, y, θ) and their rates
 };
 
-/// Rigid body that declares the layout of the pose of its centre of mass.
+/// Rigid body that declares the order of its coordinates, which are the position of the centre of mass and the
+/// rotation.
 template <class B>
 concept HasRigidLayout = requires {
   { B::layout } -> std::convertible_to<RigidLayout>;
@@ -51,13 +52,13 @@ concept FloatingFrameBody = requires(B const b) {
   { b.deformations() } -> std::convertible_to<Index>;
 };
 
-/// True for bodies that move by m r̈ = m g and J Ω˙ + Ω × J Ω = 0 if no joint or force acts on them. The declaration
-/// holds for the type itself and not for derived types.
+/// True for bodies that move by m r̈ = m g and J Ω˙ + Ω × J Ω = 0 if only gravity acts on them. The declaration holds
+/// for the type itself and not for derived types.
 template <class B>
 inline constexpr bool moves_by_newton_euler = false;
 
-/// Body whose points are linear in its coordinates, r = S e with constant S. `gradients` is the number of position
-/// gradients r_α that are linear in e as well.
+/// Body whose points are linear in the coordinates e of their element, r = S e. `position_map` returns the constant
+/// matrix S. `gradients` is the number of position gradients ∂r/∂x, ∂r/∂y, ∂r/∂z that are also linear in e.
 template <class B>
 concept HasLinearPoints = requires(B const b, typename B::Point p) {
   { B::gradients } -> std::convertible_to<int>;
@@ -100,8 +101,8 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
 
 /// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters:
 ///   Φ(q) = 0,  G = ∂Φ/∂q,  Φ̈ = G v̇ + γ.
-/// G has `own_equations` rows and one column for each generalised velocity of the body, whose number is fixed. The
-/// equations are counted and solved like those of a joint.
+/// G has `own_equations` rows and one column for each generalised velocity of the body. The number of generalised
+/// velocities is known at compile time. The equations are counted and solved like those of a joint.
 template <class B>
 concept HasOwnEquations = requires(B const b, std::span<double const> x, Vec<double, B::own_equations>& rows,
                                    Mat<double, B::own_equations, B::element_columns>& map,
@@ -126,8 +127,7 @@ template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.velocities() : Index(B::element_columns);
 }
-/// Number of columns of a marker at p on `body`: `columns_of(p)` if the body defines this function, because its markers
-/// differ in size.
+/// Number of columns of a marker at p on `body`. A body whose markers differ in size defines `columns_of(p)`.
 template <class B>
 Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
   if constexpr (requires { body.columns_of(p); })
@@ -143,7 +143,7 @@ struct BodyMotion {
 };
 
 /// Body of one element that adds its residual, M v̇ − f minus the weight under g, to the rows of its generalised
-/// velocities. For a small body this is faster than storing the terms and reading them again.
+/// velocities. For a small body this sum is faster than storing the terms and reading them again.
 template <class B, class T>
 concept HasBodyResidual =
     requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_residual(x, g, rows); };
@@ -219,9 +219,9 @@ struct PoseOf<B, T> {
 };
 }  // namespace detail
 
-/// Load stiffness ∂(Jᵀw)/∂q (columns × columns) of a marker whose J has a fixed number of columns, by dual numbers. For
-/// bodies without a closed form, whose coordinates add: q ⊞ δ = q + δ. `body.local(p)` is the same point of a body that
-/// consists only of the columns of the marker.
+/// Load stiffness ∂(Jᵀw)/∂q (columns × columns) of a marker whose J has a fixed number of columns, by dual numbers. The
+/// function is for bodies without a closed form whose coordinates add: q ⊞ δ = q + δ. `body.local(p)` is the point p of
+/// a body that has only the coordinates of the marker.
 template <class B>
 void load_stiffness_by_dual_numbers(B const& body, typename B::Point const& p, std::span<double const> q,
                                     Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {

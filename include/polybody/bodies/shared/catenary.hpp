@@ -11,8 +11,8 @@ namespace polybody {
 /// Catenary of a cable between the origin and `end`, as a function of its arc length s, for `from(bar, n, catenary(…))`
 /// or as an undeformed shape [Irvine 1981, ch. 1]. With sinh u = sinh u₀ + s/a,
 ///   x = a (u − u₀) along the horizontal,  z = a (cosh u − cosh u₀) upwards,
-///   with the ratio a of the horizontal force to the weight per length:
-///   2a sinh(d/2a) = √(L² − h²) for a span d and a rise h of the end.
+///   2a sinh(d/2a) = √(L² − h²),  u₀ = artanh(h/L) − d/2a,
+/// with the ratio a of the horizontal force to the weight per length [m], the span d [m] and the rise h [m] of `end`.
 /// The y axis of the section lies in the plane of the curve.
 /// \param end (3) position of the second end, in the axes of the bar [m] \param length L [m], greater than |end|
 /// \param down (3) direction of the weight, in the axes of the bar; any length

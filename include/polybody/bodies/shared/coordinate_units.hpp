@@ -8,8 +8,9 @@
 
 namespace polybody {
 
-/// Body that declares the units of its coordinates. It also declares those of its generalised velocities if these are
-/// not the rates of the coordinates. Tables of states have the units in their headings (io/state_table.hpp).
+/// Body that declares the units of its coordinates. A body whose generalised velocities are not the rates of the
+/// coordinates also declares their units (`velocity_unit`). The headings of state tables contain the units
+/// (io/state_table.hpp).
 template <class B>
 concept HasCoordinateUnits = requires(B const b, Index i) {
   { b.coordinate_unit(i) } -> std::convertible_to<char const*>;

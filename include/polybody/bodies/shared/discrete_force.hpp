@@ -9,7 +9,7 @@ namespace polybody {
 /// step, the stress is computed from the strain ε̄ + decay Δε and the strain rate ε̇ = rate Δε.
 struct DiscreteDerivative {
   double rate = 0.0;   ///< 1/h [1/s]
-  double decay = 0.0;  ///< factor of C Δε·Δε in the dissipated energy [1]; 0 conserves energy
+  double decay = 0.0;  ///< numerical dissipation [1]: a step dissipates decay C Δε², C: stiffness; 0 for none
 };
 
 /// Body of constant mass whose coordinates form a vector space. It computes a discrete-gradient force f over a step

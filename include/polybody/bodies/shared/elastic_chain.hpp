@@ -76,7 +76,7 @@ class ElasticChain : public NodeChain<columns> {
   /// Chain of n elements; the strain groups can be added later.
   explicit ElasticChain(Index n, std::vector<Groups> groups = {}) : Chain(n), groups_(std::move(groups)) {}
   void add_groups(Groups const& groups) { groups_.push_back(groups); }          ///< adds the groups of one more element
-  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }  ///< one tuple for all or per element
+  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }  ///< one for all elements, or one each
 
   Groups const& groups_of(Index e) const { return groups_[alike() ? 0 : std::size_t(e)]; }  ///< groups of element e
   /// Entries of x (coordinates or generalised velocities) that belong to element e.

@@ -18,7 +18,7 @@ template <class B>
 concept IdenticalElements =
     requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
              Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
-      requires B::vectorised_kernels;                     // false for kernels with sines, by measurement
+      requires B::vectorised_kernels;                     // false for kernels with sines: no gain from SIMD
       { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
       b.template element_inertia<SimdVector<>>(x, out);
       b.template element_force<SimdVector<>>(x, x, out);
@@ -72,8 +72,8 @@ Vec<SimdVector<>, n> side_by_side(SimdPointers const& x) {
   }
   return packed;
 }
-/// Inverse of `side_by_side`: writes the numbers of each element plus the entries of `same` to its vector or matrix in
-/// `each`.
+/// Inverse of `side_by_side`: sets `each[l]`, the vector or matrix of element l, to the numbers of this element plus
+/// `same`.
 template <class Packed, class Each>
 void take_apart(Packed const& packed, Each const& same, std::array<Each, simd_size>& each) {
   static_assert(Packed::SizeAtCompileTime % simd_size == 0);

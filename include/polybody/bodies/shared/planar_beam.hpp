@@ -11,7 +11,7 @@
 
 namespace polybody::detail {
 
-/// Tuple of the strain groups for the strain laws of a beam theory.
+/// Type of the tuple of strain groups for the strain laws of a beam theory.
 template <class Laws>
 struct GroupsOf;
 template <class... Laws>
@@ -107,11 +107,11 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
   /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
-  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, with the strains ε⁰ of the elements whose nodes are on the curve.
+  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, where ε⁰ are the strains when all nodes are on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
   /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
-  /// or is not parameterised by its arc length. The axial strain of an element relative to
-  /// the arc length must lie in (−0.1, 0.1).
+  /// or is not parameterised by its arc length. The axial strain of an element relative to the arc length must lie in
+  /// (−0.1, 0.1).
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
@@ -245,8 +245,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     out.columns = element_columns;
   }
 
-  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. Jᵀw = Nᵀf + h c with the row h of θ̇ = h·ė and c = m − y t·f; the
-  /// derivative is therefore c ∂h/∂e − y (n·f) h hᵀ.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. Jᵀw = Sᵀf + h c, with S of r₀ = S e, h of θ̇ = h·ė, and c = m − y t·f.
+  /// The derivative is therefore c ∂h/∂e − y (n·f) h hᵀ.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Element<double> const x = this->of_element(p.element, q), rest = Element<double>::Zero();
     SectionAngle<double, element_columns> const turned = Theory::template rotation<double>(p.xi, l_, x, rest);
@@ -282,7 +282,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
         l_(bar.length / double(n)),
         origin_(bar.placement.origin.head<2>()),
         angle_(bar.placement.planar_angle(Theory::name)) {
-    // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the polynomials of the theory
+    // M = ∫ (Aρ SᵀS + Iρ h hᵀ) dx with θ̇ = h·ė, gravity_ = Aρ ∫ Sᵀ dx; exact for the polynomials of the theory
     for (GaussPoint const& g : gauss<4>) {
       Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
       mass_ += g.weight * l_ * c.mass_per_length * s.transpose() * s;
@@ -314,8 +314,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// Coordinates of nodes that are placed on a curve at equal arc lengths.
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
     if (!curve)
-      throw InvalidInput("reference_curve.missing",
-                         {ErrorObject{Theory::name}, ": the reference curve is an empty function."});
+      throw InvalidInput("reference_curve.missing", {ErrorObject{Theory::name},
+                                                     ": the reference curve is an empty function. Pass a function that "
+                                                     "returns a Placement for each arc length s."});
     std::vector<double> nodes(std::size_t(this->coordinates()));
     double angle = angle_;  // includes full revolutions
     for (Index i = 0; i <= elements(); ++i) {

@@ -9,13 +9,14 @@
 namespace polybody {
 
 /// Body that computes section strains and section forces at its coordinates q, with the same names for every
-/// formulation. Both are vectors of six in the axes of the deformed section, with x along the beam:
+/// formulation. The strains and the forces are vectors of six in the axes of the deformed section, with x along the
+/// beam:
 ///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], relative to the
-///                    reference;
+///                    undeformed shape;
 ///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
-///                    without damping, which the part beyond the section exerts on the part before the section.
-/// Components that a formulation does not have are zero: a cable has no shear and no torsion. The shear force of a
-/// cable or of a floating frame follows from the derivative of the moment.
+///                    without damping. The part beyond the section exerts these forces on the part before the section.
+/// Components that a formulation does not have are zero: a cable has no shear and no torsion. Cables and floating
+/// frames also return zero for the shear force, which is the derivative of the bending moment along the axis.
 template <class B>
 concept HasSections = requires(B const b, typename B::Point p, std::span<double const> q) {
   { b.section_strains(p, q) } -> std::convertible_to<Vec6>;
@@ -31,18 +32,22 @@ Vec2 off_axis(P const& p) {
   return x;
 }
 
-/// Strain ε − y κ_z + z κ_y of the fibre (y, z) [m] of a section that remains plane, from its `strains` (Γ, K).
+/// Strain ε − y κ_z + z κ_y of the fibre at (y, z) [m] of a section that remains plane. `strains` are the section
+/// strains (`HasSections`).
 inline double fibre_strain(Vec6 const& strains, double y, double z) {
   return strains[0] - y * strains[5] + z * strains[4];
 }
 
-/// Axial stress N/A − y M_z/I_z + z M_y/I_y [N/m²] of the fibre (y, z) [m] under the section forces `forces` (N, M).
+/// Axial stress N/A − y M_z/I_z + z M_y/I_y [N/m²] of the fibre at (y, z) [m]. `forces` are the section forces
+/// (`HasSections`).
 /// \throws InvalidInput for a bar without section and material.
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   if (!bar.material)
-    throw InvalidInput("bar.no_section", {ErrorObject{"fibre_stress"},
-                                          ": the bar has constants only; stresses need its section and material."});
+    throw InvalidInput(
+        "bar.no_section",
+        {ErrorObject{"fibre_stress"},
+         ": the bar has only constants. Give it a section and a material, from which the stress follows."});
   BarConstants const c = constants(bar);
   return bar.material->young * (forces[0] / c.EA - y * forces[5] / c.EI + z * forces[4] / *c.EI_y);
 }

@@ -61,8 +61,8 @@ class StrainGroup : public StrainPoints<Law> {
 
   // `tangent_of` assembles the tangent from all groups of an element: it calls `prepare` once, then `add_block` for
   // each block.
-  /// Data for the blocks of the tangent: the stiffness h of each point with respect to p. Quadratic strains have the
-  /// tangent K̂ instead, with respect to the nodal vectors that they read.
+  /// Data for the blocks of the tangent: the stiffness h of each point with respect to p. For quadratic strains, the
+  /// data are the tangent K̂ with respect to the nodal vectors ê_v of `StrainMap`.
   template <KernelScalar T>
   struct Prepared {
     using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;                ///< h of each point
@@ -71,10 +71,11 @@ class StrainGroup : public StrainPoints<Law> {
   };
 
   /// Computes the tangent K̂ of quadratic strains, with N of `StrainMap` and S_i of `QuadraticStrains`:
-  ///   K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st,
+  ///   K̂_vw = Σ_points (Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st),
   ///   β = B P,  γ = w C [ck B + τ (ck Ḃ + cd B)] P,  Ḃ_i = H_i ṗ,  σ = ck w Σ n_i S_i.
-  /// If few strains read many vectors, this takes fewer operations than Pᵀ h P. The loop processes a few points at a
-  /// time, so that their data fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
+  /// If few strains read many vectors, K̂ takes fewer operations than Pᵀ h P. w is the weight of a point. The loop
+  /// processes a few points at a time, so that their data fit into the first-level cache. The blocks above the diagonal
+  /// are omitted if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic
@@ -227,8 +228,8 @@ class StrainGroup : public StrainPoints<Law> {
     for (int i = 0; i < m; ++i) strain[i] += rate[i] * time_[i];
   }
 
-  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with
-  /// P and Q of `HasObjectiveRate`. Most laws have P = 1 and Q = 0.
+  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ Σ_j [D_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with
+  /// D = P_ε and Q of `HasObjectiveRate`. Most laws have D = 1 and Q = 0.
   template <class T>
   void add_damping_gradient(double w, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // rows ck H_j ṗ + cd B_j

@@ -7,8 +7,8 @@
 
 namespace polybody {
 
-/// Strains that are quadratic in the parameters, ε_i = ½ Σ_st S_i,st p_s·p_t + const., for shapes s and t that read the
-/// same nodal vectors. Then H_i = S_i ⊗ 1, and B is linear in p, so that H_i ṗ = B_i(ṗ).
+/// Strains that are quadratic in the parameters, ε_i = ½ Σ_st S_i,st p_s·p_t + const. All shapes p_s (`StrainMap`) read
+/// the same nodal vectors. Then H_i = S_i ⊗ 1, and B is linear in p, so that H_i ṗ = B_i(ṗ).
 template <class L>
 concept QuadraticStrains = requires(Vec<double, L::strains> const n,
                                     Mat<double, L::parameters / L::components, L::parameters / L::components> s) {

@@ -27,7 +27,7 @@ class StrainPoints {
 
   StrainPoints() = default;
   /// Quadrature points of elements of length l [m]: those of `Law::rule` if it exists, otherwise Gauss points.
-  /// `initial` is the stress in the reference configuration.
+  /// `initial` is the stress n⁰ at ε = ε⁰, such as a pretension.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
     requires StrainLaw<Law>
       : StrainPoints(Law::stiffness(c), Law::damping(d)) {
@@ -97,9 +97,10 @@ class StrainPoints {
   /// Adds the discrete-gradient force of the group over a step from x0 to x1, with secants S of the strains [Gonzalez
   /// 1996]:
   ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
-  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
-  /// Strains that are components of a rotating vector enter through their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
-  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The term of `decay` then exerts a moment.
+  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force exerts no moment on the body if strains are
+  /// scalar products of the parameters. A strain vector that rotates with the body enters through its square z
+  /// (`HasSquare`): n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), with κ₀ = 1e-3 1/m, which agrees with the damping of
+  /// `objective_rate`. The term of `decay` then exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
                       Vec<double, n>& f) const {

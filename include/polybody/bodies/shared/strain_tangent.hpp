@@ -29,8 +29,8 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }  // namespace detail
 
 /// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping the tangent is symmetric, and
-/// only the blocks on and below the diagonal are computed. The blocks of the first nodal vector are the negative
-/// blocks of the vector that is read relative to it (`StrainMap`).
+/// only the blocks on and below the diagonal are computed. The blocks of the first nodal vector are the negative blocks
+/// of the vector `difference`, which is read relative to the first one (`StrainMap`).
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,
                 Mat<T, n, n>& k) {
@@ -58,7 +58,7 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
       if (v == difference && w == difference) detail::set_block<false, T, d, n>(0, 0, block, false, k);
     }
   };
-  if constexpr (d == 1) {  // few entries, most with a single product, which the compiler finds in unrolled loops
+  if constexpr (d == 1) {  // most entries are one product, and unrolled loops make its indices constants
 #pragma GCC unroll 8
     for (int v = first; v < n; ++v)
 #pragma GCC unroll 8

@@ -36,10 +36,10 @@ struct Slider {
 /// without friction. The position of a slider is undetermined if no joint with constraint equations holds it, and the
 /// linear solver reports this.
 ///
-/// A slider depends on all columns of the body, because its element changes with s. Its Jacobian rows are therefore as
-/// long as the body, and its load stiffness is dense. At a node, r″ and the accelerations jump. Beyond an end of the
-/// body, the cubic of the last element continues for one element length, so that a step may end there.
-/// run/sliders.hpp has an event at the end of the body.
+/// A slider depends on all columns of the body, because its element changes with s. Its Jacobian therefore has a column
+/// for each generalised velocity of the body, and its load stiffness is dense. When the slider passes a node, r″ and
+/// the accelerations jump. Beyond an end of the body, the cubic of the last element continues for one element length,
+/// so that a step may end there. `slider_end_event` (run/sliders.hpp) is a terminal event at both ends of the body.
 template <Body B>
 class WithSliders : public B {
   static_assert(SmoothAxis<B>,
@@ -115,9 +115,9 @@ class WithSliders : public B {
     out.columns = velocities();
   }
 
-  /// Load stiffness in the first rows and columns of k. For a slider Jᵀw = [s_i f; r′·f]. The derivative of s_i f with
-  /// respect to s is s_i′ f, the transpose of the derivative of r′·f with respect to e_i. The last entry is ∂(r′·f)/∂s
-  /// = r″·f.
+  /// Load stiffness ∂(Jᵀw)/∂q. For a material point the function sets only the first rows and columns of k. For a
+  /// slider Jᵀw = [s_i f; r′·f]. The derivative of s_i f with respect to s is s_i′ f, the transpose of the derivative
+  /// of r′·f with respect to e_i. The last entry is ∂(r′·f)/∂s = r″·f.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     if (p.slider < 0) {
       Mat<double, B::point_columns, B::point_columns> each;
@@ -147,7 +147,8 @@ class WithSliders : public B {
       throw SliderOutOfRange(
           "slider.out_of_range",
           {ErrorObject{"WithSliders"}, ": a slider is beyond the end of the body: s = ", ErrorValue{s},
-           " m, but the length is ", B::length(), " m. End the run there with slider_end_event, or fix the slider."});
+           " m, but the length is ", B::length(),
+           " m. End the run at the ends of the body with slider_end_event, or hold the slider on the body."});
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
   }

@@ -56,7 +56,8 @@ struct Bushing {
   Required<Matrix> stiffness;  ///< (6×6) K, blocks [N/m], [N/rad]; [N], [N m/rad]
   Required<Matrix> damping;    ///< (6×6) C, blocks [N s/m], [N s/rad]; [N s], [N m s/rad]
 
-  /// Diagonal matrix with the given values along and about the joint's axes.
+  /// Diagonal matrix with the values `along` the joint's axes, [N/m] or [N s/m], and `about` these axes, [N m/rad] or
+  /// [N m s/rad].
   template <class = void>  // compiled only if used
   static Matrix diagonal(Vec3 const& along, Vec3 const& about) {
     auto k = detail::zeros<Matrix>();
@@ -67,7 +68,7 @@ struct Bushing {
     return k;
   }
 
-  /// \throws InvalidInput unless K and C are symmetric and positive semidefinite; `what` is the joint's name.
+  /// \throws InvalidInput unless K and C are finite, symmetric and positive semidefinite; `what` is the joint's name.
   template <class = void>  // compiled only if used
   void check(std::string const& what) const {
     detail::require_semidefinite(stiffness.value, what + ": the bushing's stiffness");

@@ -33,7 +33,7 @@ struct LinearLaw {
   T operator()(T const& x, T const& rate) const {
     return x * stiffness.value + rate * damping.value;
   }
-  /// Energy stored at x [m] or [rad] [J].
+  /// Stored energy [J] at x [m] or [rad].
   double potential(double x) const { return 0.5 * stiffness * x * x; }
 };
 
@@ -49,7 +49,7 @@ struct TabulatedLaw {
   T operator()(T const& x, T const& rate) const {
     return force(x) + rate * damping.value;
   }
-  /// Energy stored at x [m] or [rad] [J].
+  /// Stored energy [J] at x [m] or [rad].
   double potential(double x) const { return force.integral(x); }
 };
 
@@ -100,7 +100,7 @@ struct NonlinearBushing {
     });
     return slope;
   }
-  /// Energy at x (6) of the laws that have a potential [J].
+  /// Stored energy [J] at x (6), the sum over the laws that have a potential.
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {

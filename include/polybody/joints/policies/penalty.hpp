@@ -55,7 +55,7 @@ struct PenaltyPerEquation {
   /// \throws InvalidInput unless k > 0 and c ≥ 0 for every equation; `what` is the joint's name.
   void check(std::string const& what) const {
     for (int i = 0; i < n; ++i) {
-      std::string const row = sentence_of({" of row ", i + 1});
+      std::string const row = sentence_of({" of constraint equation ", i + 1});
       require_positive(stiffness.value[i], what + ": the penalty stiffness" + row);
       require_not_negative(damping.value[i], what + ": the penalty damping" + row);
     }
