@@ -201,12 +201,21 @@ class PerturbedModels {
       if (sum.size() == 0) sum.setZero(value.size());
       sum += by * value;
     };
-    if (j != along_motion)
+    if (j != along_motion) {
+      // Coordinates that change by more than `largest_change` are differenced apart, with a shorter distance.
+      double const distance = n_.parameter(j).distance(), most = with.q.lpNorm<Eigen::Infinity>();
+      bool const apart = most * distance > largest_change;
       for (std::size_t k = 0; k < points; ++k) {
-        add_motion(state_, with, FourPoints::places[k] * n_.parameter(j).distance(), x);
+        add_motion(state_, with, apart ? 0.0 : FourPoints::places[k] * distance, x);
         state_.t = n_.times(j)(k, x.t);
         add_value(f(n_.perturbed(j, k), state_), weight(j, k));
       }
+      state_.t = x.t;
+      for (std::size_t k = 0; apart && k < points; ++k) {
+        add_motion(state_, with, FourPoints::places[k] * largest_change / most, x);
+        add_value(f(n_.itself(), state_), FourPoints::weights[k] * most / largest_change);
+      }
+    }
     if (p.reach == 0.0) return sum;
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
@@ -283,6 +292,8 @@ class PerturbedModels {
   // remain before the next breakpoint: a step that does not end at the breakpoint ends at least 1 % of its length
   // before this breakpoint.
   static constexpr double largest_part = 4e-3;
+  // Largest change of a coordinate in a difference of outputs [m, rad, 1]; a quaternion remains nearly of norm one.
+  static constexpr double largest_change = 4e-3;
 
   struct Parts {
     State with, along;  // change at fixed time; change along the motion, empty if `reach` is 0

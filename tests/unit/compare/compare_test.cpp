@@ -151,7 +151,7 @@ TEST(Compare, TypesAloneDoWhereEveryNumberHasADefault) {
   ASSERT_EQ(c.runs.size(), 2u);
   std::ostringstream text;
   text << c;
-  for (char const* word : {"GeneralisedAlpha", "RungeKutta4", "degrees of freedom", "Newton iterations a step",
+  for (char const* word : {"GeneralisedAlpha", "RungeKutta4", "degrees of freedom", "Newton iterations per step",
                            "peak joint force [N]", "end: tip y [m]"})
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
 }

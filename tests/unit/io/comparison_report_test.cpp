@@ -114,7 +114,7 @@ TEST_F(ComparisonReport, TableHoldsWhatIsPrintedInFullPrecision) {
     return std::nan("");
   };
   EXPECT_EQ(value("coordinates", 2), 2.0);
-  EXPECT_EQ(value("Newton iterations a step", 2), 7.5);
+  EXPECT_EQ(value("Newton iterations per step", 2), 7.5);
   EXPECT_EQ(value("CPU ratio to the first", 2), 2.0);
   EXPECT_EQ(value("energy at the end - at the start [J]", 1), 1.0 / 3.0);
   EXPECT_EQ(value("end: x [m]", 1), std::cos(10.0));
