@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
-#include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>

@@ -1,4 +1,4 @@
-#include <polybody/io/file_content.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/math/errors.hpp>
 
 #include <sstream>

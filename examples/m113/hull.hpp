@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <polybody/forces/axial_spring.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/so3.hpp>
 #include <polybody/run/marker_frames.hpp>

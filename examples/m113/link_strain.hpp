@@ -6,7 +6,6 @@
 #include <array>
 
 #include <polybody/run/marker_frames.hpp>
-#include <polybody/stress/section.hpp>
 #include <polybody/vehicle/link_axes.hpp>
 
 #include "links.hpp"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include <polybody/run/contacts.hpp>
+#include <polybody/run/applied_wrenches.hpp>
 #include <polybody/run/marker_frames.hpp>
 
 #include "data.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 // Combinations of links and pins that the options select, and runs of several combinations.
-#include <polybody/compare/join.hpp>
+#include <polybody/compare/compare.hpp>
 
 #include "stress_runs.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 // Results of runs: means and ranges, differences, cycles of stress.
 #include <polybody/signals/rainflow.hpp>
-#include <polybody/signals/rms_difference.hpp>
+#include <polybody/signals/samples.hpp>
 
 #include "stress_runs.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 // Results of the vehicle's runs, printed in lines.
-#include <polybody/signals/rms_difference.hpp>
+#include <polybody/signals/samples.hpp>
 #include <polybody/vehicle/track_checks.hpp>
 
 #include "../support/lines.hpp"

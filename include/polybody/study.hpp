@@ -6,8 +6,8 @@
 #include <polybody/io/checkpoint.hpp>
 #include <polybody/io/state_table.hpp>
 #include <polybody/study/grid.hpp>
+#include <polybody/study/limited_point.hpp>
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
 #include <polybody/study/statistics.hpp>
 #include <polybody/study/study.hpp>
-#include <polybody/study/thread_time.hpp>

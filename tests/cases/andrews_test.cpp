@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -1,7 +1,7 @@
 // Body on a bushing compared with closed forms (J3).
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>

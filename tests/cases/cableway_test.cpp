@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

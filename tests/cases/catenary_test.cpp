@@ -8,7 +8,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

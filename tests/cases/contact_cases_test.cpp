@@ -10,9 +10,8 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>

@@ -7,9 +7,8 @@
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>

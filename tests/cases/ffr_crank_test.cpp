@@ -8,8 +8,8 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

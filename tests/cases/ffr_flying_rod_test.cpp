@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

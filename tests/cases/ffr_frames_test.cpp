@@ -4,12 +4,11 @@
 
 #include <numbers>
 #include <polybody/bodies/ffr/ffr.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/statics/equilibrium.hpp>
-#include <polybody/stress/section.hpp>
 
 #include "support/held.hpp"
 

@@ -5,8 +5,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>

@@ -10,8 +10,7 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -4,10 +4,10 @@
 
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/probe.hpp>

@@ -4,7 +4,7 @@
 #include <polybody/bodies/shared/catenary.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>

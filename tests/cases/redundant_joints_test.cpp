@@ -5,7 +5,6 @@
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

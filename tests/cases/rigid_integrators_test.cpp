@@ -5,9 +5,8 @@
 
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/nonholonomic.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>

@@ -1,7 +1,7 @@
 // refused: AncfLinear supports Spherical, Revolute and Weld
 // Distance does not name its free directions.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,6 +1,6 @@
 // refused: AncfLinear needs markers that are linear in the coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,6 +1,6 @@
 // refused: AncfLinear supports Spherical, Revolute and Weld
 #include <polybody/bodies/ancf/ancf_beam.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,6 +1,6 @@
 // refused: joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/maxwell_element.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/simulate.hpp>

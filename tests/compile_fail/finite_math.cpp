@@ -1,3 +1,3 @@
 // refused: polybody refuses -ffast-math.*checks for NaN
 // options: -std=c++20 -O1 -ffinite-math-only
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>

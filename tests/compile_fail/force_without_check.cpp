@@ -1,6 +1,6 @@
 // refused: A force element needs check
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

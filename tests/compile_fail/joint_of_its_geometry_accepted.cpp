@@ -1,6 +1,6 @@
 // accepted
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 using namespace polybody;

@@ -1,6 +1,6 @@
 // refused: JointCoordinates needs a joint whose motion has coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/system/model.hpp>
 

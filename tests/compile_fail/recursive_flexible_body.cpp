@@ -1,6 +1,6 @@
 // refused: JointCoordinates supports joints between the ground, rigid bodies and floating frames
 #include <polybody/bodies/ancf/ancf_beam.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 

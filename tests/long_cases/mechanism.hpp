@@ -12,10 +12,10 @@
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/standard_joints.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
-#include <polybody/stress/section.hpp>
 
 #include "support/held.hpp"
 

@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/sliders.hpp>
 

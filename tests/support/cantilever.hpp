@@ -2,9 +2,9 @@
 /// \file A planar bar, clamped at its first end, loaded at the second and by gravity, in static equilibrium. It is
 /// the model of the static reference cases.
 
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

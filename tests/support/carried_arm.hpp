@@ -3,10 +3,10 @@
 
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>

@@ -6,7 +6,6 @@
 
 #include <polybody/forces/contact.hpp>
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 
 namespace polybody {
 

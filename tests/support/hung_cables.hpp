@@ -3,8 +3,8 @@
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/elimination.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Small conservative models for tests of integrators.
 
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 
 #include "support/chain.hpp"
 #include "support/exact_pendulum.hpp"

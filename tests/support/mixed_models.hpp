@@ -7,15 +7,15 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/system.hpp>
-#include <polybody/testing/frames.hpp>
+#include <polybody/testing/differences.hpp>
 
 namespace polybody {
 

@@ -8,11 +8,11 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/math/time_functions.hpp>
 #include <polybody/run/probe.hpp>
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 

@@ -3,8 +3,8 @@
 #include <random>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/forces/springs.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>

@@ -2,8 +2,8 @@
 /// \file A bar in space, clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with
 /// a third dimension.
 
-#include <polybody/forces/point_load.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>

@@ -5,14 +5,14 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/solved_points.hpp>
 #include <polybody/integrators/system_for.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>

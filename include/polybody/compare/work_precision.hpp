@@ -128,8 +128,8 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
       point.error = std::max(point.error, error);
     };
     State x = scenario.start, again = x;
-    auto run = simulate(scenario.model, x, integrator, scenario.options);
     try {
+      auto run = simulate(scenario.model, x, integrator, scenario.options);
       std::clock_t const begin = std::clock();
       point.steps = run.run().steps;
       point.cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;

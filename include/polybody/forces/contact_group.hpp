@@ -72,7 +72,7 @@ class ContactGroup {
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// Overload for the markers i in [begin, end) of the many.
+  /// Overload for the markers i in [begin, end) of the many; `frame` and `visit` are as above.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))

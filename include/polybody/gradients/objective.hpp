@@ -9,8 +9,8 @@
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
-#include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/parameter.hpp>
+#include <polybody/gradients/run_sensitivity.hpp>
 #include <polybody/run/marker_frames.hpp>
 
 namespace polybody {

@@ -7,7 +7,6 @@
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/evaluation_point.hpp>
-#include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/run_sensitivity.hpp>
 

@@ -2,7 +2,6 @@
 /// \file
 /// Record of a run with breakpoints and events, from which each step can be repeated with bitwise identical results.
 
-#include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/run_sensitivity.hpp>
 #include <polybody/run/run_driver.hpp>
 

@@ -1,8 +1,12 @@
 #pragma once
 /// \file
-/// Derivative of the state of a run, and linear combinations of such derivatives.
+/// Derivative of the state of a run, and conversion of reduced states to full states and back.
 
+#include <polybody/elimination/reduced_coordinates.hpp>
+#include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/integrators/step_history.hpp>
+#include <polybody/run/event_action.hpp>
+#include <polybody/run/initial_conditions.hpp>
 
 namespace polybody::detail {
 
@@ -43,6 +47,76 @@ State displaced(State const& x, State const& dx, double e) {
   add(out, dx, e);
   StepHistory::lengths_of(out) = StepHistory::lengths_of(x);
   return out;
+}
+
+/// Converts reduced states of a run to full states with the multipliers of eliminated joints. \tparam M model; if its
+/// joints eliminate no unknowns, both states are the same
+template <class M, StateScalar T = double>
+class FullStates {
+ public:
+  explicit FullStates(M const&) {}
+  StateOf<T> const& operator()(StateOf<T> const& x) const { return x; }
+};
+template <class M, StateScalar T>
+  requires M::eliminates
+class FullStates<M, T> {
+ public:
+  [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
+  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints with joint
+  /// coordinates are evaluated from the equations, because their estimates in x have no derivatives.
+  StateOf<T> const& operator()(StateOf<T> const& x) {
+    stepped_ = x;
+    stepped_.lambda.conservativeResize(system_.rows());
+    expand(system_, stepped_, full_, scratch_);
+    return full_;
+  }
+
+ private:
+  BasicSystem<T> system_;
+  StateOf<T> stepped_, full_;
+  VecXOf<T> scratch_;
+};
+
+/// Reduced state of the model v for a full state x. The velocities are projected onto the constraint equations before
+/// the elimination.
+template <class V>
+[[gnu::cold]] State stepped_state(V const& v, State x) {
+  if constexpr (V::Model::eliminates) {
+    System full(v.scenario.model, with<Capabilities::motion>);
+    ForwardDynamics<> forward(full);
+    forward.project_velocities(full, x.q, x.v, x.t);
+    return reduce(v.system, x);
+  } else {
+    return x;
+  }
+}
+
+/// Applies the actions of the events that occurred last to the full state x. Returns the reduced state of the model v.
+/// \throws InvalidInput if the state after an action is invalid (see `act`).
+template <class V>
+[[gnu::cold]] State acted_state(V& v, EventDetector const& watch, State x) {
+  RunOptions const& o = v.scenario.options;
+  if constexpr (V::Model::eliminates) {
+    System full(v.scenario.model, with<Capabilities::motion>);
+    act(watch, o.events, x, full, o.assembly_tolerance);
+  } else {
+    act(watch, o.events, x, v.system, o.assembly_tolerance);
+  }
+  return stepped_state(v, std::move(x));
+}
+
+/// \throws InconsistentInitialConditions if the initial state of a scenario violates a joint, including eliminated
+/// joints.
+template <class V>
+[[gnu::cold]] void require_assembled_start(V& v) {
+  State const& x = v.scenario.start;
+  double const tolerance = v.scenario.options.assembly_tolerance;
+  if constexpr (V::Model::eliminates) {
+    System full(v.scenario.model, with<Capabilities::motion>);
+    require_assembled(full, x, tolerance);
+  } else {
+    require_assembled(v.system, x, tolerance);
+  }
 }
 
 }  // namespace polybody::detail

@@ -4,7 +4,7 @@
 
 #include <polybody/integrators/error_tolerance.hpp>
 #include <polybody/integrators/stabilisation.hpp>
-#include <polybody/math/quadrature.hpp>
+#include <polybody/math/element_functions.hpp>
 #include <polybody/system/state.hpp>
 #include <polybody/system/system.hpp>
 

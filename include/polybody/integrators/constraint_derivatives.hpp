@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <polybody/integrators/correction_size.hpp>
+#include <polybody/integrators/newton_failure.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/system.hpp>
 

@@ -216,7 +216,8 @@ struct CoordinatePartitioning {
     System& system;
     Scratch& s;
     double limit;                                             ///< largest permitted entry of |G_d⁻¹ G_i| [1]
-    double before = std::numeric_limits<double>::infinity();  ///< largest |Φ| or |Φ̇| before the last correction
+    double before = std::numeric_limits<double>::infinity();  ///< largest |Φ| [m, rad] or |Φ̇| [m/s, rad/s] before the
+                                                              ///< last correction
     int renewals = 0;
 
     template <class = void>

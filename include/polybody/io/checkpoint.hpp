@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include <polybody/io/atomic_file.hpp>
-#include <polybody/io/file_content.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/run/run_snapshot.hpp>
 
 namespace polybody {

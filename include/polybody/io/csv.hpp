@@ -15,8 +15,8 @@
 #include <vector>
 
 #include <polybody/io/atomic_file.hpp>
-#include <polybody/io/digits.hpp>
 #include <polybody/io/table.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/math/errors.hpp>
 
 namespace polybody {

@@ -9,9 +9,8 @@
 #include <optional>
 
 #include <polybody/io/atomic_file.hpp>
-#include <polybody/io/digits.hpp>
-#include <polybody/io/file_content.hpp>
 #include <polybody/io/film_scene.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/math/checksum.hpp>
 
 namespace polybody::detail {

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include <polybody/io/file_content.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/math/errors.hpp>
 
 namespace polybody {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-#include <polybody/io/digits.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/io/visual.hpp>
 #include <polybody/math/errors.hpp>
 

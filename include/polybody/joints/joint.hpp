@@ -5,7 +5,6 @@
 #include <type_traits>
 #include <utility>
 
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/policies/policy.hpp>
 

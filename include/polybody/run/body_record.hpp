@@ -108,7 +108,7 @@ class LoadRecorderOf {
   void add(BodyHandle<B> const& handle) {
     static_assert(HasRigidPoints<B>,
                   "LoadRecorder supports rigid bodies only. For a flexible body use the stress of its sections "
-                  "(stress/section.hpp).");
+                  "(run/marker_frames.hpp).");
     Index const body = index_of(system_.layout(), handle);
     if (!records_.empty() && !records_.front().samples.empty())
       throw InvalidInput("record.late", {"LoadRecorder: \"", ErrorObject{handle.name},

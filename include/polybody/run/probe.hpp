@@ -8,7 +8,6 @@
 
 #include <polybody/run/accelerations.hpp>
 #include <polybody/run/applied_wrenches.hpp>
-#include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/joint_position.hpp>
 #include <polybody/run/marker_frames.hpp>

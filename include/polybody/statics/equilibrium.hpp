@@ -6,7 +6,7 @@
 #include <polybody/run/state_checks.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/equilibrium_equations.hpp>
-#include <polybody/statics/load_steps.hpp>
+#include <polybody/statics/equilibrium_options.hpp>
 #include <polybody/statics/stability.hpp>
 #include <polybody/system/make_operations.hpp>
 

@@ -2,7 +2,7 @@
 /// \file
 /// "Decoupled" stress: stress of a recorded rigid body, computed after the run [Wallin 2016, §4.3.5].
 
-#include <polybody/bodies/ffr/static_supports.hpp>
+#include <polybody/bodies/ffr/attachment_modes.hpp>
 #include <polybody/bodies/shared/sections.hpp>
 #include <polybody/stress/structure_vibration.hpp>
 

@@ -1,11 +1,27 @@
 #pragma once
 /// \file
-/// Computation of a study's point in a separate process with a time limit. Needs POSIX.
+/// Computation of a study's point in a separate process with a time limit, and the processor time of one thread. Needs
+/// POSIX.
 
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <ctime>
+
+#include <polybody/math/compiler.hpp>
+
+namespace polybody {
+
+/// Processor time of the calling thread so far [s]. In contrast, std::clock adds the times of all threads.
+inline double thread_seconds() {
+  timespec now = {};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+}  // namespace polybody
+
 #if __has_include(<sys/prctl.h>)
 #include <sys/prctl.h>
 #endif

@@ -9,7 +9,7 @@
 
 #include <charconv>
 
-#include <polybody/io/digits.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/math/checksum.hpp>
 #include <polybody/study/outcome.hpp>
 

@@ -5,9 +5,9 @@
 #include <map>
 
 #include <polybody/io/atomic_file.hpp>
-#include <polybody/io/digits.hpp>
 #include <polybody/io/figure.hpp>
 #include <polybody/io/table.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/study/outcome.hpp>
 
 namespace polybody {

@@ -7,7 +7,7 @@
 
 #include <thread>
 
-#include <polybody/io/file_content.hpp>
+#include <polybody/io/text_files.hpp>
 #include <polybody/study/grid.hpp>
 #include <polybody/study/limited_point.hpp>
 #include <polybody/study/queue.hpp>

@@ -5,8 +5,7 @@
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/kinematics/marker.hpp>
 
 namespace polybody {

@@ -8,8 +8,7 @@
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/forces/force_group.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/kinematics/marker.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/state.hpp>

@@ -2,7 +2,7 @@
 /// \file
 /// Requirements of energy-conserving integration on bodies, policies and forces.
 
-#include <polybody/bodies/shared/discrete_force.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
 #include <polybody/math/secant.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/pools.hpp>

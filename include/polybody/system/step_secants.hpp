@@ -12,9 +12,9 @@ namespace polybody {
 struct SecantStep {
   VecX const* q0 = nullptr;  ///< (nq) coordinates at the beginning of the step
   VecX const* q1 = nullptr;  ///< (nq) coordinates at the end of the step
-  /// In order: time t at the beginning of the step [s], length h of the step [s], dissipation parameter χ [1]. The step
-  /// dissipates the energy χ ΔεᵀCΔε, with the strains ε and the elastic stiffness C.
-  double t = 0.0, h = 0.0, decay = 0.0;
+  double t = 0.0;            ///< time at the beginning of the step [s]
+  double h = 0.0;            ///< length of the step [s]
+  double decay = 0.0;        ///< χ [1]; the step dissipates χ ΔεᵀCΔε, with the strains ε and the elastic stiffness C
   VecX const* v0 = nullptr;  ///< (nv) velocities at t; only the first-order states are read
   VecX const* a = nullptr;   ///< (nv) rates over the step; only those of first-order states are read
 };

@@ -7,7 +7,6 @@
 
 #include <polybody/forces/force_states.hpp>
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 
 namespace polybody::laws {
 

@@ -9,7 +9,6 @@
 
 #include <polybody/joints/constraint_terms.hpp>
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 #include <polybody/testing/laws.hpp>
 
 namespace polybody::laws {

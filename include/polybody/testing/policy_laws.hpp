@@ -6,7 +6,6 @@
 
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 #include <polybody/testing/laws.hpp>
 
 namespace polybody::laws {

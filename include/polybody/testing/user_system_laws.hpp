@@ -7,7 +7,6 @@
 
 #include <polybody/system/user_system.hpp>
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 #include <polybody/testing/laws.hpp>
 
 namespace polybody::laws {

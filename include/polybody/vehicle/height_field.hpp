@@ -2,7 +2,7 @@
 /// \file
 /// Ground given by heights on a grid, for example from a survey or a generated road.
 
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 #include <polybody/vehicle/terrain.hpp>
 
 namespace polybody {

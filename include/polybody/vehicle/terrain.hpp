@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <polybody/math/dual.hpp>
+#include <polybody/math/element_functions.hpp>
 #include <polybody/math/monotone_table.hpp>
-#include <polybody/math/shape_functions.hpp>
 
 namespace polybody {
 

@@ -3,7 +3,7 @@
 /// Small vibrations about a steady rotation.
 
 #include <polybody/solvers/newton.hpp>
-#include <polybody/statics/load_steps.hpp>
+#include <polybody/statics/equilibrium_options.hpp>
 #include <polybody/vibration/modes.hpp>
 
 namespace polybody {

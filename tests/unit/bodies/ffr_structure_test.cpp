@@ -163,6 +163,19 @@ TEST(Bases, MeanAxesDecoupleTheFrame) {
 
 // Statics is independent of the frame: a tip force on a clamped bar, with a frame fixed to either end or simply
 // supported.
+// A frame that holds nodes leaves fewer rigid motions, or none. No deformation mode is omitted.
+TEST(Bases, FreeInterfaceModesOfAHeldStructureStartWithTheLowest) {
+  Structure const s = structure_of(unit(), 16);
+  auto const lowest = [&](ReferenceConditions const& frame) {
+    VecX const mode = free_interface_modes(s, 1, frame);
+    return std::sqrt(mode.dot(s.stiffness * mode) / mode.dot(s.mass_matrix() * mode));
+  };
+  EXPECT_NEAR(lowest(ReferenceConditions::none()), free_free[0], 1e-3 * free_free[0]);
+  EXPECT_NEAR(lowest(ReferenceConditions::clamped()), clamped_free[0], 1e-3 * clamped_free[0]);
+  double const pinned_free = 15.41820572;  // tan β = tanh β
+  EXPECT_NEAR(lowest(ReferenceConditions::none().fix(0, 0).fix(0, 1).fix(0, 2)), pinned_free, 1e-3 * pinned_free);
+}
+
 TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
   Structure const s = structure_of(unit(), 8);
   Ffr const a(s, nodal_coordinates(s)), b(s, nodal_coordinates(s, ReferenceConditions::simply_supported(0, 8)));

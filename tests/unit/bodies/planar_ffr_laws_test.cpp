@@ -1,8 +1,8 @@
 // Law tests of bodies for the planar floating frame of reference.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 
+#include <polybody/testing/differences.hpp>
 #include <polybody/testing/flexible_body_laws.hpp>
-#include <polybody/testing/frames.hpp>
 
 namespace polybody {
 using namespace laws;

@@ -4,8 +4,8 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/run/probe.hpp>
-#include <polybody/stress/section.hpp>
 
 #include "support/cantilever.hpp"
 #include "support/held.hpp"

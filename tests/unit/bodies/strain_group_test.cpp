@@ -5,7 +5,7 @@
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
-#include <polybody/bodies/shared/strain_tangent.hpp>
+#include <polybody/bodies/shared/elastic_chain.hpp>
 #include <random>
 
 using namespace polybody;

@@ -1,4 +1,4 @@
-#include <polybody/bodies/shared/strain_tangent.hpp>
+#include <polybody/bodies/shared/elastic_chain.hpp>
 
 #include <gtest/gtest.h>
 

@@ -4,12 +4,12 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/body_law_definitions.hpp>

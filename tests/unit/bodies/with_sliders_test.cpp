@@ -6,10 +6,10 @@
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/system.hpp>
-#include <polybody/testing/frames.hpp>
+#include <polybody/testing/differences.hpp>
 
 #include "support/refusal.hpp"
 

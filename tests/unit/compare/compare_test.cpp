@@ -1,4 +1,4 @@
-#include <polybody/compare/join.hpp>
+#include <polybody/compare/compare.hpp>
 
 #include <gtest/gtest.h>
 

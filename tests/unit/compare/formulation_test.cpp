@@ -3,8 +3,8 @@
 #include <polybody/compare/compare.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/marker_frames.hpp>
 
 #include <gtest/gtest.h>

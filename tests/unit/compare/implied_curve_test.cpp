@@ -1,4 +1,4 @@
-#include <polybody/compare/implied_curve.hpp>
+#include <polybody/compare/mesh_diagnostics.hpp>
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <polybody/elimination/reduced_sink.hpp>
-#include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 

@@ -1,4 +1,4 @@
-#include <polybody/forces/axial_spring.hpp>
+#include <polybody/forces/springs.hpp>
 
 #include <gtest/gtest.h>
 

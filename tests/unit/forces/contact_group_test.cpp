@@ -6,10 +6,10 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/run/contacts.hpp>
+#include <polybody/run/applied_wrenches.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/testing/frames.hpp>
+#include <polybody/testing/differences.hpp>
 
 #include "support/refusal.hpp"
 

@@ -1,12 +1,12 @@
 // Distributed force along a bar, compared with an equal weight, in every formulation.
-#include <polybody/forces/distributed_force.hpp>
+#include <polybody/forces/loads.hpp>
 
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

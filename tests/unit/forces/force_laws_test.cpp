@@ -1,8 +1,6 @@
 // Law tests of force elements for those of the library.
-#include <polybody/forces/axial_spring.hpp>
-#include <polybody/forces/maxwell_element.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 
 #include <gtest/gtest.h>
 

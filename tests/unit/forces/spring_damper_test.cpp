@@ -1,4 +1,4 @@
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 
 #include <gtest/gtest.h>
 

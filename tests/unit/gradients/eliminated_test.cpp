@@ -6,8 +6,7 @@
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 
 #include "support/hung_cables.hpp"
 #include "support/impacts_of_whole_states.hpp"

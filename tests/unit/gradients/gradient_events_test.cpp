@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 
 #include "support/impacts_of_whole_states.hpp"
 #include "support/moving_times.hpp"

@@ -10,9 +10,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 
 #include "support/rated_links.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 
 #include "support/rated_links.hpp"
 #include "support/refusal.hpp"

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 
 using namespace polybody;

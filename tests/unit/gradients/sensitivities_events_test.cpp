@@ -6,7 +6,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 
 #include "support/moving_times.hpp"
 

@@ -9,12 +9,12 @@
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 

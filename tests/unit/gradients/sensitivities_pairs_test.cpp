@@ -9,11 +9,9 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include "support/differences_of_runs.hpp"

@@ -6,7 +6,7 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/refusal.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/integrators/newmark.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/newmark.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

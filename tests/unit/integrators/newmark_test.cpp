@@ -1,4 +1,4 @@
-#include <polybody/integrators/newmark.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 
 #include <gtest/gtest.h>
 

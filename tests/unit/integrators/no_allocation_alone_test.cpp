@@ -11,8 +11,7 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
-#include <polybody/forces/maxwell_element.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
@@ -22,7 +21,7 @@
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

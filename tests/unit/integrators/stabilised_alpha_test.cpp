@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
 #include "support/held.hpp"

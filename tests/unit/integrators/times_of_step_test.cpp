@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/driving_constraints.hpp>

@@ -9,7 +9,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/nonholonomic.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
 #include "support/solver_instances.hpp"

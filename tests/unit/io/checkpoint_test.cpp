@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 
 #include "support/refusal.hpp"
 #include "support/resumed_run.hpp"

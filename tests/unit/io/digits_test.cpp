@@ -1,4 +1,4 @@
-#include <polybody/io/digits.hpp>
+#include <polybody/io/text_files.hpp>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/io/run_table.hpp>

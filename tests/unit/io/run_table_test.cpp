@@ -8,7 +8,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -9,9 +9,9 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/io/visual.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

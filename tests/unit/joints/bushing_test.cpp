@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 
 #include <Eigen/LU>
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/testing/frames.hpp>
+#include <polybody/testing/differences.hpp>
 
 #include "support/refusal.hpp"
 

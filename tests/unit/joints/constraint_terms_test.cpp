@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/testing/frames.hpp>
+#include <polybody/testing/differences.hpp>
 
 using namespace polybody;
 using namespace polybody::laws;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/testing/joint_laws.hpp>
 
 #include "support/refusal.hpp"

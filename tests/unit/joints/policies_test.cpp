@@ -1,11 +1,10 @@
-#include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 
 #include "support/refusal.hpp"
 

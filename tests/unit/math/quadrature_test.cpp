@@ -1,4 +1,4 @@
-#include <polybody/math/quadrature.hpp>
+#include <polybody/math/element_functions.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 
 #include <gtest/gtest.h>
 

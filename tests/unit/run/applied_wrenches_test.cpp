@@ -7,9 +7,8 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
-#include <polybody/forces/maxwell_element.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>

@@ -3,7 +3,7 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/diagnose.hpp>
 #include <polybody/vibration/modes.hpp>

@@ -16,8 +16,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/differences.hpp>
 

@@ -5,8 +5,8 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/policies/elimination.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

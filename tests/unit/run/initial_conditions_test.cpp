@@ -3,7 +3,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/nonholonomic.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/constraint.hpp>
+#include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/solvers/block_lu.hpp>

@@ -11,7 +11,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/driving_constraints.hpp>
-#include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/policies/elimination.hpp>
 #include <polybody/math/time_functions.hpp>
 #include <polybody/run/any_model.hpp>
 #include <polybody/run/initial_conditions.hpp>

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/summary.hpp>
 

@@ -1,7 +1,7 @@
 // Differences of histories.
 #include <gtest/gtest.h>
 
-#include <polybody/signals/rms_difference.hpp>
+#include <polybody/signals/samples.hpp>
 
 #include <numbers>
 

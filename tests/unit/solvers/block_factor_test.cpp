@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
 
 #include "support/blocks.hpp"

@@ -4,7 +4,7 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/run/minimum_norm.hpp>

@@ -9,15 +9,14 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
+#include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/integrators/newmark.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/standard_joints.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/stress/section.hpp>
 #include <polybody/vibration/steady_rotation.hpp>
 
 #include "support/held.hpp"

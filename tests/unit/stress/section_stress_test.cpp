@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/math/quadrature.hpp>
+#include <polybody/math/element_functions.hpp>
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"

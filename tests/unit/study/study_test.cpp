@@ -9,11 +9,11 @@
 #include <iterator>
 #include <random>
 
+#include <polybody/study/limited_point.hpp>
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
 #include <polybody/study/statistics.hpp>
 #include <polybody/study/study.hpp>
-#include <polybody/study/thread_time.hpp>
 
 #include "support/refusal.hpp"
 

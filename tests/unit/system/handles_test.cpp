@@ -3,7 +3,7 @@
 #include <optional>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/system/model.hpp>

@@ -1,8 +1,8 @@
 // The law suites detect errors: a type with one mistake breaks the law that describes it. A law without meaning for a
 // case has no test.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/primitives.hpp>

@@ -19,8 +19,8 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact_group.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/standard_joints.hpp>

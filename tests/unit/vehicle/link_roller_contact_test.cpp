@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <polybody/testing/differences.hpp>
-#include <polybody/testing/frames.hpp>
 
 #include "support/contact_points.hpp"
 #include "support/held.hpp"

@@ -6,7 +6,7 @@
 #include <polybody/run/body_record.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/signals/filter.hpp>
-#include <polybody/signals/rms_difference.hpp>
+#include <polybody/signals/samples.hpp>
 
 #include "m113/decoupled_link_strain.hpp"
 #include "m113/modal_links.hpp"

@@ -6,8 +6,8 @@
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/forces/point_load.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/loads.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/primitives.hpp>

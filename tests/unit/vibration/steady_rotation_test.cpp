@@ -5,7 +5,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/forces/spring_damper.hpp>
+#include <polybody/forces/springs.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>

@@ -9,7 +9,7 @@
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 
 namespace polybody::ancf {
 

@@ -4,7 +4,7 @@
 /// with coordinates (r, r′) at both ends.
 
 #include <polybody/bodies/shared/strain_group.hpp>
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 #include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 

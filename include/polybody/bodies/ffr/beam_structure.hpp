@@ -5,7 +5,7 @@
 /// element frames of thesis Eqs. A.2–A.3 permit any direction of an element.
 
 #include <polybody/bodies/ffr/structure.hpp>
-#include <polybody/math/quadrature.hpp>
+#include <polybody/math/element_functions.hpp>
 
 namespace polybody {
 

@@ -188,27 +188,6 @@ MatX fixed_interface_modes(Structure const& s, Index count,
   return scatter_rows(solve(k, m, count).shapes, free, s.size());
 }
 
-/// Lowest `count` deformation modes of the free structure, computed by `solve`. The frame follows the mean motion:
-/// relative to this frame, momentum and angular momentum of the deformation vanish to first order (mean axes of
-/// Tisserand or Buckens).
-/// \param frame `none()`, with or without `restrict_to_plane()`
-/// \throws InvalidInput for a count above the number of these modes, and for a mass matrix that is not positive
-/// definite.
-template <class Eigensolver = DenseModes>
-MatX free_interface_modes(Structure const& s, Index count,
-                          ReferenceConditions const& frame = ReferenceConditions::none(),
-                          Eigensolver const& solve = {}) {
-  std::vector<Index> const free = frame.free_coordinates(s);
-  int const rigid = frame.rigid_motions();
-  detail::require_count(count, Index(free.size()) - rigid);
-  Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
-  detail::require_mass(m);
-  // K is singular. A shift of the size of a low squared frequency makes K regular and does not change the modes.
-  double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
-  LowestModes const modes = solve(Structure::Sparse(k + shift * m), m, count + rigid);
-  return scatter_rows(modes.shapes.rightCols(count), free, s.size());
-}
-
 /// Rigid motions of the structure (N×6): displacements along x, y, z, and rotations about these axes through the centre
 /// of mass.
 template <class = void>  // compiled only if used
@@ -221,6 +200,28 @@ MatX rigid_motions(Structure const& s) {
     if (s.per_node == 6) out.block<3, 3>(6 * i + 3, 3).setIdentity();
   }
   return out;
+}
+
+/// Lowest `count` deformation modes of the structure under the conditions `frame`, computed by `solve`; without
+/// conditions, those of the free structure. The frame then follows the mean motion: relative to this frame, momentum
+/// and angular momentum of the deformation vanish to first order (mean axes of Tisserand or Buckens).
+/// \throws InvalidInput for a count above the number of these modes, and for a mass matrix that is not positive
+/// definite.
+template <class Eigensolver = DenseModes>
+MatX free_interface_modes(Structure const& s, Index count,
+                          ReferenceConditions const& frame = ReferenceConditions::none(),
+                          Eigensolver const& solve = {}) {
+  std::vector<Index> const free = frame.free_coordinates(s);
+  MatX held = rigid_motions(s);  // rigid motions of the coordinates that `frame` holds
+  held(free, Eigen::all).setZero();
+  Index const rigid = 6 - (free.size() < std::size_t(s.size()) ? held.colPivHouseholderQr().rank() : 0);
+  detail::require_count(count, Index(free.size()) - rigid);
+  Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
+  detail::require_mass(m);
+  // K is singular. A shift of the size of a low squared frequency makes K regular and does not change the modes.
+  double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
+  LowestModes const modes = solve(Structure::Sparse(k + shift * m), m, count + rigid);
+  return scatter_rows(modes.shapes.rightCols(count), free, s.size());
 }
 
 /// Basis of the same deformations in another frame: `shapes` (N×n) minus the rigid motion R x of the new frame. With

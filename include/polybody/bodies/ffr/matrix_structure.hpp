@@ -7,7 +7,6 @@
 #include <Eigen/SparseCholesky>
 
 #include <polybody/bodies/ffr/matrix_file.hpp>
-#include <polybody/bodies/ffr/number_reader.hpp>
 #include <polybody/bodies/ffr/structure.hpp>
 
 namespace polybody {

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 
 namespace polybody::planar {
 

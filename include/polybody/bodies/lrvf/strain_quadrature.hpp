@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include <polybody/math/quadrature.hpp>
+#include <polybody/math/element_functions.hpp>
 
 namespace polybody {
 

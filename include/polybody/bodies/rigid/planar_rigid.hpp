@@ -4,7 +4,7 @@
 /// velocities.
 
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/bodies/shared/discrete_force.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
 
 namespace polybody::planar {
 

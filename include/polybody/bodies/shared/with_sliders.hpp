@@ -9,7 +9,7 @@
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/coordinate_units.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
-#include <polybody/math/shape_functions.hpp>
+#include <polybody/math/element_functions.hpp>
 
 namespace polybody {
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Kinds of joint policies. The assembly treats all policies of one kind with the same code.
+/// Kinds of joint policies, and the policy `Constraint`. The assembly treats all policies of one kind with the same
+/// code.
 
 #include <polybody/joints/constraint_terms.hpp>
 
@@ -37,5 +38,12 @@ concept CompliantPolicy = CompliantLaw<P, 1> || CompliantLaw<P, 2> || CompliantL
 /// Joint policy of exactly one kind.
 template <class P>
 concept Policy = (int(ConstrainingPolicy<P>) + int(CompliantPolicy<P>) == 1);
+
+/// Ideal joint: a Lagrange multiplier enforces each constraint equation exactly. The generalised force of the joint is
+/// −Gᵀλ [thesis Eq. 3.2–3.3].
+struct Constraint {
+  static constexpr char const* name = "Constraint";
+  static constexpr bool adds_constraints = true;  ///< constraint equations with multipliers
+};
 
 }  // namespace polybody
