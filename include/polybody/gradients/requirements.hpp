@@ -42,14 +42,19 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                       Index(v.scenario.options.events.size()),
                       Index(v.breakpoints().size())};
   };
-  if (sizes(other) != sizes(model))
-    throw InvalidInput("derivative.sizes",
-                       {ErrorObject{who}, ": for another value of \"", p.name,
-                        "\" the function that makes the model returns a different size. Parameters may change "
-                        "values, but not the numbers of bodies, joints, forces, outputs, events "
-                        "and breakpoints."});
-  Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
-  if (here && there.reduced->full_velocity != here.reduced->full_velocity)
+  static constexpr std::array names{"coordinates", "velocities", "constraint equations",
+                                    "outputs",     "events",     "breakpoints"};
+  auto const there = sizes(other), here = sizes(model);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (there[i] != here[i])
+      throw InvalidInput("derivative.sizes",
+                         {ErrorObject{who}, ": for another value of \"", p.name,
+                          "\" the function that makes the model returns a different size: ", ErrorValue{there[i]}, " ",
+                          names[i], " instead of ", here[i],
+                          ". Parameters may change values, but not the numbers of bodies, joints, forces, outputs, "
+                          "events and breakpoints."});
+  Coordinates const &own = model.system.step_coordinates(), &changed = other.system.step_coordinates();
+  if (own && changed.reduced->full_velocity != own.reduced->full_velocity)
     throw InvalidInput(
         "derivative.elimination",
         {ErrorObject{who}, ": a change of \"", p.name,

@@ -17,7 +17,7 @@
 
 namespace polybody {
 
-/// Values of a step in the scalar type T.
+/// Workspace of one Runge–Kutta step in the scalar type T: initial state, increment, and all stages.
 template <class Method, StateScalar T>
 struct RungeKuttaNumbers {
   VecXOf<T> q0;                                                 ///< (nq) coordinates at the start

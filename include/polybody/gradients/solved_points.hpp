@@ -161,7 +161,7 @@ Dual<N> lift(double h, std::span<double const> dh) {
   for (std::size_t l = 0; l < dh.size(); ++l) out.d[Index(l)] = dh[l];
   return out;
 }
-/// Copies the derivatives in `from` to one vector of the derivatives of a state.
+/// Copies derivative l in `from` to the vector `of`, such as `&State::v`, of the state derivative dx[l], for each l.
 template <int N>
 void take_derivatives(VecXOf<Dual<N>> const& from, std::span<State* const> dx, VecX State::* of) {
   for (std::size_t l = 0; l < dx.size(); ++l) {

@@ -209,7 +209,8 @@ class StepFactorisations {
     return kind == ApproximateFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
   }
 
-  /// Tangent coefficients for a kind of factorisation, with the active contact pairs of this kind.
+  /// Tangent coefficients for a factorisation of the `kind`. They refer to the contact pairs that have blocks in its
+  /// matrix.
   TangentCoefficients coefficients(ApproximateFactors kind, double mass, double damping, double stiffness) {
     return {.mass = mass,
             .damping = damping,

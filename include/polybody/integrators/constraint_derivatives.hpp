@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Derivatives ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint accelerations by finite differences, also in joint coordinates.
 
 #include <algorithm>
 
@@ -8,7 +10,7 @@
 
 namespace polybody::detail {
 
-// Constraint equations in joint coordinates, as equations in the velocities of all bodies of a tree.
+// Converts constraint equations in joint velocities to equations in the velocities of all bodies of a tree.
 
 /// Expresses rows A u̇ in joint velocities u as rows f v̇ in the velocities v of all bodies, with v̇ = T u̇ and f T =
 /// A. The equations of all bodies include the constraint equations of the tree. Therefore f v̇ = A u̇ for every

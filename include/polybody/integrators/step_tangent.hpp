@@ -31,7 +31,8 @@ class StepTangent {
     left_out_.clear();
     forget();
   }
-  /// Deactivates the activated terms and resets their period, at the start of a run.
+  /// Deactivates the second-order terms that failed steps activated, and resets the number of steps for which they
+  /// stay active. Called at the start of a run.
   void forget() {
     included_ = went_ = false;
     left_ = since_ = 0;

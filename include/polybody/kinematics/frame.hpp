@@ -83,7 +83,8 @@ struct Placement {
       throw InvalidInput(
           "placement.axes",
           {ErrorObject{what}, ": the placement's axes must be orthonormal and right-handed, but |A'A - 1| is ",
-           ErrorValue{std::sqrt(off)}, " and the determinant ", determinant, "."});
+           ErrorValue{std::sqrt(off)}, " (at most 1e-9) and the determinant is ", determinant,
+           " (one). Normalise the columns and make them orthogonal; if the determinant is negative, reverse one."});
   }
 
   /// Angle about world z of a planar placement [rad].

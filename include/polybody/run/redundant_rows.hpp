@@ -71,8 +71,8 @@ template <class = void>
 template <class = void>  // compiled only if used
 struct ScaledRows {
   VecX of_velocity, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
-  /// Sizes of all equations for `BlockFactor::null_vectors`: the square roots of the diagonals of M and of G D⁻¹ Gᵀ,
-  /// where D is the diagonal of M.
+  /// Typical magnitudes of all equations for `BlockFactor::null_vectors`: the square roots of the diagonals of M and of
+  /// G D⁻¹ Gᵀ, where D is the diagonal of M.
   VecX of_equation;
 
   explicit ScaledRows(System& system)

@@ -127,8 +127,8 @@ class BlockFactor {
   /// Computes for each unknown d of `dropped` the vector n with 1 at d, 0 at all other dropped unknowns, and A n = 0 in
   /// all other rows. A is the last factorised matrix. If the equation of d is redundant, n is a null vector of A. The
   /// cost of a vector is proportional to the size of the nodes with nonzero entries.
-  /// \param sizes sizes of the equations, so that A_ij is of the order of sizes_i sizes_j or less. n_i counts as zero
-  /// if |n_i| sizes_i ≤ 1e-12 sizes_d, and an entry r_i of A n if |r_i| ≤ 1e-12 sizes_i sizes_d
+  /// \param sizes typical magnitudes of the equations, so that A_ij is of the order of sizes_i sizes_j or less. n_i
+  /// counts as zero if |n_i| sizes_i ≤ 1e-12 sizes_d, and an entry r_i of A n if |r_i| ≤ 1e-12 sizes_i sizes_d
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const;
   /// True if the last factorisation used symmetry, with half the work.
   bool was_symmetric() const { return symmetric_; }

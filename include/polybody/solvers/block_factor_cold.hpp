@@ -63,7 +63,8 @@ bool BlockFactor<symmetry>::is_doubtful(double share) const {
 template <Symmetry symmetry>
 class BlockFactor<symmetry>::NullSpace {
  public:
-  /// Null space of the factorisation `of` of equations with these `sizes`.
+  /// Prepares the null vectors of a factorised matrix. \param of its factorisation \param sizes typical magnitudes of
+  /// its equations
   NullSpace(BlockFactor const& of, VecX const& sizes)
       : of_(of),
         nodes_(of.layout_.nodes),

@@ -121,13 +121,14 @@ class ConstantBlockCache {
       rest_.mark_redundant(std::span<Index const>(rows.data(), rows.size()));
     }
   }
-  /// True if a redundancy decision of the last factorisation is doubtful for `share`: see `BlockFactor::is_doubtful`.
+  /// True if a redundancy decision of the last factorisation is doubtful. \param share largest relative pivot of a
+  /// doubtful decision [1], see `BlockFactor::is_doubtful`
   [[gnu::cold]] bool is_doubtful(double share) const {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
   /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). Empty if `Solver` does not
-  /// provide null vectors. \param sizes sizes of all equations
+  /// provide null vectors. \param sizes typical magnitudes of all equations
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
     if constexpr (requires { rest_.null_vectors(sizes); }) {
       for (std::size_t i = 0; i < place_.size(); ++i)

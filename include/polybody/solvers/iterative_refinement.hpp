@@ -78,8 +78,8 @@ class IterativeRefinement {
   {
     return solver_.is_doubtful(share);
   }
-  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). \param sizes sizes of all
-  /// equations
+  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). \param sizes typical
+  /// magnitudes of all equations
   auto null_vectors(VecX const& sizes) const
     requires requires(Solver const s) { s.null_vectors(sizes); }
   {

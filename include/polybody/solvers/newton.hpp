@@ -328,8 +328,9 @@ struct NewtonSolve {
 /// factorisation the first condition also requires that no correction of the solve grew. After a large correction θ is
 /// small for any iterate and does not prove convergence. Corrections of one factorisation are combined
 /// (`AndersonAcceleration`), except in full Newton and without `predictive_stop`. θ is then the contraction rate of the
-/// factorisation alone. In the first condition, the residual of the fit then replaces ‖Δ‖. At the second correction,
-/// the geometric mean of ‖Δ‖ and this residual replaces ‖Δ‖ instead. The solve fails after `max_growths` growing
+/// factorisation alone. The first condition then contains the residual of the fit in place of ‖Δ‖. At the second
+/// correction, θ is only a ratio of two corrections; the condition then contains the geometric mean of ‖Δ‖ and the
+/// residual of the fit. The solve fails after `max_growths` growing
 /// corrections of new factorisations.
 ///
 /// Full Newton: in stiff directions the rate θ alternates (0.01, 0.8, 1e-4, …: bending, then the stretch due to

@@ -80,10 +80,11 @@ class RedundancyDropping {
     if (judges_) judge_.mark_redundant(unknowns);
     drop(unknowns);
   }
-  /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
+  /// True if equations are dropped and this decision is doubtful. \param share largest relative pivot of a doubtful
+  /// decision [1], see `BlockFactor::is_doubtful`
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). \param sizes sizes of all
-  /// equations
+  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`). \param sizes typical
+  /// magnitudes of all equations
   Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const { return judge_.null_vectors(sizes); }
 
  private:

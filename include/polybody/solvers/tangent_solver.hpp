@@ -49,8 +49,8 @@ class LinearEquations {
   /// joints: see `BlockFactor::is_doubtful`.
   virtual bool is_doubtful() const = 0;
   /// Computes the null vectors of the dropped equations, in the unknowns of the linear equations
-  /// (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors. \param sizes sizes of all
-  /// equations
+  /// (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors. \param sizes
+  /// typical magnitudes of all equations
   virtual Sequence<IndexMap<double>> null_vectors(VecX const& sizes) = 0;
 };
 

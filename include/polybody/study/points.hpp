@@ -71,13 +71,14 @@ class Points {
     auto const printable = [](std::string const& text) {
       return !text.empty() && std::ranges::none_of(text, [](unsigned char c) { return c < ' ' || c == 127; });
     };
-    bool good = printable(column.name) && (column.unit.empty() || printable(column.unit));
-    for (std::string const& choice : column.choices) good = good && printable(choice);
-    if (!good)
-      throw InvalidInput(
-          "points.columns",
-          {"study: column \"", ErrorObject{column.name},
-           "\" has a name, unit or choice that is empty or not printable. Use text without line breaks."});
+    char const* fault = printable(column.name) ? nullptr : "the name";
+    if (!column.unit.empty() && !printable(column.unit)) fault = "the unit";
+    for (std::string const& choice : column.choices)
+      if (!printable(choice)) fault = "a choice";
+    if (fault != nullptr)
+      throw InvalidInput("points.columns",
+                         {"study: ", fault, " of column ", j, ", counted from 0, \"", ErrorObject{column.name},
+                          "\" is empty or not printable. Use text without line breaks."});
     for (std::size_t k = 0; k < j; ++k)
       if (columns_[k].name == column.name)
         throw InvalidInput("points.columns", {"study: duplicate column \"", ErrorObject{column.name},

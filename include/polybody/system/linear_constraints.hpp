@@ -122,7 +122,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);
-  // c = r_a − r_b; a point with columns contributes zero, because only ground points have a constant position.
+  // c is the constant part of r_a − r_b. Only ground points have a constant part: they depend on no coordinates.
   V const still = (a.columns == 0 ? a.at : V(V::Zero())) - (b.columns == 0 ? b.at : V(V::Zero()));
   append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;

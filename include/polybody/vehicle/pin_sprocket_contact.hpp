@@ -166,7 +166,7 @@ struct PinSprocketContact {
   }
 
  private:
-  /// Upper bound of the distance of a ring from the sprocket's middle [m].
+  /// Largest distance of a ring of teeth from the centre of the sprocket, along its axis [m].
   double farthest_ring() const {
     double far = 0.0;
     for (double const ring : rings) far = std::max(far, std::abs(ring));

@@ -71,7 +71,9 @@ inline std::string tooth_step_warning(int teeth, double speed, double step) {
 /// \throws InvalidInput for a path without corners.
 template <class = void>  // compiled only if it is used
 double distance_to_path(Vec2 const& p, std::span<Vec2 const> corners) {
-  if (corners.empty()) throw InvalidInput("path.empty", {"The path has no corner. Give at least one corner."});
+  if (corners.empty())
+    throw InvalidInput("path.empty",
+                       {ErrorObject{"distance_to_path"}, ": the path has no corner. Give at least one corner."});
   double nearest = (p - corners.front()).squaredNorm();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     Vec2 const along = corners[i + 1] - corners[i], to = p - corners[i];

@@ -56,7 +56,7 @@ TEST(DistanceToPath, TakesCornersThatCoincide) {
 
 TEST(DistanceToPath, RefusesAPathWithoutCorners) {
   EXPECT_TRUE(
-      has(refusal([] { distance_to_path(Vec2(0.0, 0.0), std::span<Vec2 const>()); }), "The path has no corner"));
+      has(refusal([] { distance_to_path(Vec2(0.0, 0.0), std::span<Vec2 const>()); }), "the path has no corner"));
 }
 
 }  // namespace distance_to_path_test
