@@ -51,7 +51,7 @@ TEST(BeadOnAStraightLine, LeavesItsEnd) {
   EXPECT_TRUE(has(message_of<SliderOutOfRange>([&] {
                     simulate(rig.model, y, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 2.0, .step = 1e-2}).run();
                   }),
-                  "End the run there with slider_end_event"));
+                  "End the run at the ends of the body with slider_end_event"));
   EXPECT_GT(slider_position(rig.model, y, rig.line), 2.0);  // the last state within the line is kept
   EXPECT_LT(slider_position(rig.model, y, rig.line), 2.4);
 }

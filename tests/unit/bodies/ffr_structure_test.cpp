@@ -203,7 +203,7 @@ TEST(Ffr, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { fixed_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { free_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 7}, 2); }), "node 7 does not exist"));
-  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "has 2 boundary nodes, of which 1 are different"));
+  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "there are 2 boundary nodes, 1 of them distinct"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions::clamped(9)); }), "node 9 does not exist"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 7)); }), "component 7"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 0)); }), "not positive definite"));

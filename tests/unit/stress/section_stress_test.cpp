@@ -103,7 +103,7 @@ TEST(SectionStress, RefusesPointsOutside) {
   EXPECT_TRUE(has(refusal([] { section_stress(bar(Rectangle{.height = 0.1, .width = 0.2}), forces, 0.06, 0.0); }),
                   "outside the rectangle"));
   Bar const given{.length = 1.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1}};
-  EXPECT_TRUE(has(refusal([&] { section_stress(given, forces, 0.0, 0.0); }), "need its section and material"));
+  EXPECT_TRUE(has(refusal([&] { section_stress(given, forces, 0.0, 0.0); }), "Give it a section and a material"));
 }
 
 }  // namespace section_stress_test
