@@ -55,10 +55,9 @@ struct SprocketProfile {
            ErrorValue{flank}, " rad."});
     double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
-      throw InvalidInput(
-          "sprocket.valley",
-          {ErrorObject{name}, ": the tip radius must exceed the distance of the arcs' ends from the axle, ", foot,
-           " m, but is ", ErrorValue{tip_radius}, " m."});
+      throw InvalidInput("sprocket.valley",
+                         {ErrorObject{name}, ": the tip radius must exceed the radius at the ends of the valley arcs, ",
+                          foot, " m, but is ", ErrorValue{tip_radius}, " m."});
     Vec2 const k = corner();
     if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
       throw InvalidInput(

@@ -103,7 +103,7 @@ TEST(MonotoneTable, RefusesPointsThatMakeNoFunction) {
   EXPECT_TRUE(has(said({{1.0, 2.0}}), "but has 1"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, 2.0}, {0.5, 3.0}}),
                   "the abscissae of the table must increase, but point 3 has x = 0.5 after x = 1. Sort the points"));
-  EXPECT_TRUE(has(said({{0.0, 0.0}, {0.0, 2.0}}), "point 2 has 0 after 0"));
+  EXPECT_TRUE(has(said({{0.0, 0.0}, {0.0, 2.0}}), "point 2 has x = 0 after x = 0"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, nan}}), "point 2 of the table must be finite"));
   EXPECT_TRUE(has(said({{nan, 0.0}, {1.0, 1.0}}), "point 1 of the table must be finite"));
 }

@@ -53,10 +53,10 @@ TEST(StudyPoints, AGridOfOneAxisIsTheAxis) {
 }
 
 TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
-  EXPECT_TRUE(has(refusal([] { linear(0.0, nan, 3); }), "finite ends"));
+  EXPECT_TRUE(has(refusal([] { linear(0.0, nan, 3); }), "needs finite first and last values"));
   EXPECT_TRUE(has(refusal([] { linear(0.0, 1.0, 1); }), "two values"));
-  EXPECT_TRUE(has(refusal([] { logarithmic(0.0, 1.0, 3); }), "positive ends"));
-  EXPECT_TRUE(has(refusal([] { logarithmic(1.0, infinite, 3); }), "finite ends"));
+  EXPECT_TRUE(has(refusal([] { logarithmic(0.0, 1.0, 3); }), "needs positive first and last values"));
+  EXPECT_TRUE(has(refusal([] { logarithmic(1.0, infinite, 3); }), "needs finite first and last values"));
   EXPECT_TRUE(has(refusal([] { axis("step", "s", {}); }), "at least one point"));
   EXPECT_TRUE(has(refusal([] { axis("step", "s", {1.0, nan}); }), "column \"step\" is not finite"));
   EXPECT_TRUE(has(refusal([] { axis("", "s", {1.0}); }), "empty or not printable"));

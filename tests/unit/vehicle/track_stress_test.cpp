@@ -150,10 +150,10 @@ TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
   EXPECT_GT(apart(ride<AncfCable<>, AncfLinear>(setting_out(), end_time, 1e-3)), 0.5);
 }
 
-TEST(TrackStress, RefusesLessThanOneElement) {
+TEST(TrackStress, RefusesANegativeNumberOfElements) {
   using Track = m113::Vehicle<AncfCable<>, AncfLinear>;
   EXPECT_TRUE(has(refusal([] { Track(AncfLinear{}, {setting_out(), setting_out()}, options(false, -1)); }),
-                  "at least one element"));
+                  "must not be negative, but is -1"));
 }
 
 // Tracks that run around a fixed vehicle without driving resistance. The tensioner applies T₀ to either run, and the
