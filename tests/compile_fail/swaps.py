@@ -38,7 +38,7 @@ def tables(page):
         for row in rows:
             for column, cell in zip(head[1:], row[1:]):
                 for r in re.findall(r"`([^`]+)`", row[0]):
-                    for c in re.findall(r"`([^`]+)`( of velocity rows)?", column):
+                    for c in re.findall(r"`([^`]+)`( with nonholonomic equations)?", column):
                         cells[r, "".join(c)] = cell.strip(" |")
         found[head[0].strip("| "), "Constraint" in head[1]] = cells
     return found
@@ -50,8 +50,8 @@ class Axes:
     def __init__(self, page):
         table = tables(page)
         of_geometry = table["geometry", True]
-        self.by_constraint = table["geometry, by `Constraint`", False]
-        self.policy_body = table["policy, some geometry", False]
+        self.by_constraint = table["geometry, with `Constraint`", False]
+        self.policy_body = table["policy, with at least one geometry", False]
         self.stepper_body = table["integrator", False]
         self.stepper_policy = table["integrator", True]
         self.policies = [c for r, c in of_geometry if r == "Revolute"]

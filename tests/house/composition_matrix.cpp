@@ -219,7 +219,7 @@ std::string composition() {
          "\n✓: either marker. 2nd: only the second marker. n: the markers of the body do not provide the axis or "
          "frame. w: the geometry is for the plane and the body for space, or vice versa. The ground can be used "
          "everywhere. A bushing needs a frame at its first marker.\n\n" +
-         policy_body.text("policy, with any geometry") +
+         policy_body.text("policy, with at least one geometry") +
          "\nr: joint coordinates need a body with a frame, and `JointCoordinatesBy<ArticulatedBody>` needs rigid "
          "bodies. l: positions of points are not linear in the coordinates of the body.\n\n" +
          integrator_body.text("integrator") +
