@@ -3,6 +3,7 @@
 /// Comparison of several formulations for one case.
 
 #include <ctime>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -47,6 +48,12 @@ template <class B, int count, int inner>
 struct MeshOf<Modal<B, count, inner>> : Modal<B, count, inner> {};
 }  // namespace detail
 
+/// Mesh of the body of a `Formulation`, set at run time. It is used if the body is neither `Meshed` nor `Modal`.
+struct FormulationMesh {
+  std::optional<Index> elements = {};  ///< number of elements; empty: the default of the body
+  std::optional<Index> modes = {};     ///< number of modes of a floating frame; empty: the default of its options
+};
+
 /// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case under
 /// several formulations, each defined in one line:
 ///
@@ -60,14 +67,20 @@ struct Formulation {
   using PolicyType = P;                                   ///< policy that enforces the constraint equations of joints
   using IntegratorType = I;                               ///< numerical method for the equations of motion
 
-  std::string name;   ///< name in the report
-  P policy = {};      ///< policy of the case's joints
-  I integrator = {};  ///< integrator with its options
+  /// True if the body has a number of elements that can be set at run time.
+  static constexpr bool has_mesh = requires { BodyType::default_elements; };
+  /// True if the body has a number of modes that can be set at run time.
+  static constexpr bool has_modes = requires(typename BodyType::Options o) { o.modes = 1; };
+
+  std::string name = {};      ///< name in the report
+  P policy = {};              ///< policy of the case's joints
+  I integrator = {};          ///< integrator with its options
+  FormulationMesh mesh = {};  ///< mesh of the body, if its type has none
 
   /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, then the number of elements
-  /// if the body is `Meshed` or `Modal`, and `others`.
+  /// if the body is `Meshed` or `Modal` or if `mesh` contains it, and `others`.
   template <class Shape, class... Others>
-  static BodyType body(Shape const& shape, Others&&... others) {
+  BodyType body(Shape const& shape, Others&&... others) const {
     using Mesh = detail::MeshOf<B>;
     constexpr bool is_modal = requires { Mesh::modes; }, is_meshed = requires { Mesh::elements; };
     if constexpr (is_modal)
@@ -75,6 +88,14 @@ struct Formulation {
                             std::forward<Others>(others)...);
     else if constexpr (is_meshed)
       return BodyType::from(shape, Mesh::elements, std::forward<Others>(others)...);
+    else if constexpr (has_modes && sizeof...(Others) == 0) {
+      typename BodyType::Options options;
+      if (mesh.modes) options.modes = int(*mesh.modes);
+      return BodyType::from(shape, BarMesh{.elements = mesh.elements}, options);
+    } else if constexpr (has_mesh && sizeof...(Others) == 0)
+      return BodyType::from(shape, BarMesh{.elements = mesh.elements});
+    else if constexpr (has_mesh)
+      return BodyType::from(shape, mesh.elements.value_or(BodyType::default_elements), std::forward<Others>(others)...);
     else
       return BodyType::from(shape, std::forward<Others>(others)...);
   }

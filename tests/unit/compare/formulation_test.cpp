@@ -32,10 +32,15 @@ TEST(Formulation, MakesItsBodyWithTheMeshThatBelongsToIt) {
   using Coarse = Formulation<Meshed<planar::AncfCable<>, 3>, Constraint, GeneralisedAlpha>;
   using Fine = Formulation<Meshed<planar::AncfCable<>, 12>, Constraint, GeneralisedAlpha>;
   static_assert(std::same_as<Coarse::BodyType, planar::AncfCable<>> && std::same_as<Stiff::BodyType, planar::Rigid>);
-  static_assert(std::same_as<decltype(Stiff::body(bar)), planar::Rigid>);
-  EXPECT_EQ(Coarse::body(bar).elements(), 3);
+  static_assert(std::same_as<decltype(Stiff{}.body(bar)), planar::Rigid>);
+  EXPECT_EQ(Coarse{}.body(bar).elements(), 3);
   EXPECT_EQ(Fine{.name = "fine"}.body(bar).elements(), 12);
-  EXPECT_EQ(Stiff::body(bar).coordinates(), 3);
+  EXPECT_EQ(Stiff{}.body(bar).coordinates(), 3);
+  // A mesh that is set at run time.
+  using Cable = Formulation<planar::AncfCable<>, Constraint, GeneralisedAlpha>;
+  EXPECT_EQ(Cable{}.body(bar).elements(), planar::AncfCable<>::default_elements);
+  EXPECT_EQ((Cable{.mesh = {.elements = 5}}.body(bar).elements()), 5);
+  EXPECT_EQ((Stiff{.mesh = {.elements = 5}}.body(bar).coordinates()), 3);
 }
 
 /// Scenario of a rod on a pin that falls from the horizontal. The output is the height of its tip.

@@ -1,0 +1,305 @@
+#pragma once
+/// \file
+/// Comparison of formulations at equal error: mesh and step vary together, each formulation is compared with the
+/// converged result of its own physical model, and CPU times are compared at equal errors.
+
+#include <ctime>
+#include <functional>
+
+#include <polybody/bodies/shared/family.hpp>
+#include <polybody/compare/equal_error_evaluation.hpp>
+#include <polybody/compare/work_precision.hpp>
+
+namespace polybody {
+
+/// Settings of an `EqualErrorStudy`.
+struct EqualErrorOptions {
+  std::vector<Index> elements = {};                       ///< numbers of elements, ascending; at least three
+  std::vector<Index> modes = {};                          ///< numbers of modes of modal floating frames, ascending
+  std::vector<double> steps = {};                         ///< steps [s], descending; at least three
+  std::vector<double> tolerances = {};                    ///< relative tolerances, descending, for step size control
+  std::vector<double> errors = {1e-1, 1e-2, 1e-3, 1e-4};  ///< wanted errors, relative to the span of the output
+  std::size_t output = 0;                                 ///< number of the output
+  int repeats = 5;                                        ///< number of timed runs of each cheapest setting
+  Index samples = 400;                                    ///< number of intervals between the sampled times
+};
+
+/// Physical model of a formulation, and its own settings instead of those of the study.
+struct StudyEntry {
+  std::string model;               ///< name of the physical model; equal names mean equal equations
+  std::vector<Index> meshes = {};  ///< numbers of elements (or modes); empty: those of the study
+  std::vector<double> steps = {};  ///< steps [s] or tolerances [1]; empty: those of the study
+};
+
+namespace detail {
+
+/// Kind of a run in a study: with the output recorded, with output and energy recorded, recorded from perturbed initial
+/// coordinates, or timed without records.
+enum class StudyRunKind { record, record_energy, perturb, time };
+/// Runs one formulation, independent of the type of its model.
+using StudyRunner = std::function<void(StudyRun&, StudyRunKind, EqualErrorOptions const&, EqualErrorReport&)>;
+
+/// True for a formulation whose type contains a number of modes.
+template <class F>
+inline constexpr bool has_fixed_modes = false;
+template <class B, int elements, int modes, class P, class I>
+inline constexpr bool has_fixed_modes<Formulation<Modal<B, elements, modes>, P, I>> = true;
+
+/// Family of the body of a formulation. `modal` is true if the study varies the number of modes.
+template <class F>
+std::string_view family_of(F const& formulation, bool modal) {
+  bool const has_modes = modal || has_fixed_modes<F> || (F::has_modes && formulation.mesh.modes.has_value());
+  return has_modes ? families::ffr_modal : formulation_family<typename F::BodyType>;
+}
+
+/// Samples the recorded output at the times of the report. The first recorded run determines these times.
+template <class = void>
+void sample(OutputHistory const& y, Index samples, std::vector<double>& times, std::vector<double>& out) {
+  if (times.empty())
+    for (Index k = 0; k <= samples; ++k)
+      times.push_back(y.times.front() + (y.times.back() - y.times.front()) * double(k) / double(samples));
+  for (double const t : times) out.push_back(y(t));
+}
+
+/// Error of interpolation in a recorded output: largest difference between the output and its interpolation through
+/// every second state.
+template <class = void>
+double interpolation_error(OutputHistory const& y) {
+  OutputHistory half;
+  for (std::size_t k = 0; k < y.times.size(); k += 2) {
+    half.times.push_back(y.times[k]);
+    half.values.push_back(y.values[k]);
+  }
+  double most = 0.0;
+  for (std::size_t k = 3; k + 4 < y.times.size(); k += 2)
+    most = std::max(most, std::abs(half(y.times[k]) - y.values[k]));
+  return most;
+}
+
+/// Runs all settings of formulation i, and the finest one again from perturbed initial coordinates.
+template <class = void>
+void record_formulation(StudiedFormulation& f, StudyRunner const& runner, EqualErrorOptions const& o,
+                        EqualErrorReport& r) {
+  for (StudyRun& run : f.runs) try {
+      runner(run, &run == &f.runs.back() ? StudyRunKind::record_energy : StudyRunKind::record, o, r);
+    } catch (Error const& failed) {
+      run.y.clear();
+      run.failure = failed.what();
+    }
+  StudyRun moved = f.finest();
+  if (!moved.failure.empty()) {
+    f.remarks.push_back("the run with " + setting_of(f, moved) + " failed: " + moved.failure);
+    return;
+  }
+  moved.y.clear();
+  try {
+    runner(moved, StudyRunKind::perturb, o, r);
+    f.spread = largest_difference(moved.y, f.finest().y);
+  } catch (Error const& failed) {
+    f.remarks.push_back(std::string("the run from perturbed coordinates failed: ") + failed.what());
+    f.spread = std::numeric_limits<double>::infinity();
+  }
+}
+
+/// Times the cheapest runs again, alternating between the formulations, and sorts the rankings by the medians.
+template <class = void>
+void time_again(EqualErrorReport& r, std::vector<StudyRunner> const& runners, EqualErrorOptions const& o) {
+  std::vector<CheapestRun> chosen;
+  for (Ranking const& ranking : r.rankings)
+    for (CheapestRun const& c : ranking.ranked)
+      if (std::find(chosen.begin(), chosen.end(), c) == chosen.end()) chosen.push_back(c);
+  std::vector<std::vector<double>> times(chosen.size());
+  for (int k = 0; k < o.repeats; ++k)
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      StudyRun timed = r.formulations[chosen[i].formulation].runs[chosen[i].run];
+      runners[chosen[i].formulation](timed, StudyRunKind::time, o, r);
+      times[i].push_back(timed.cpu);
+    }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    std::sort(times[i].begin(), times[i].end());
+    StudyRun& run = r.formulations[chosen[i].formulation].runs[chosen[i].run];
+    std::size_t const n = times[i].size();
+    run.cpu = 0.5 * (times[i][(n - 1) / 2] + times[i][n / 2]);
+    run.least_cpu = times[i].front();
+    run.most_cpu = times[i].back();
+    run.timings = int(n);
+  }
+  auto const cpu = [&](CheapestRun const& c) { return r.formulations[c.formulation].runs[c.run].cpu; };
+  for (Ranking& ranking : r.rankings)
+    std::stable_sort(ranking.ranked.begin(), ranking.ranked.end(),
+                     [&](CheapestRun const& a, CheapestRun const& b) { return cpu(a) < cpu(b); });
+}
+
+/// \throws InvalidInput if interpolation between the states changes the output by more than the smallest wanted error.
+template <class = void>
+void require_smooth(OutputHistory const& y, EqualErrorOptions const& o, std::string const& name) {
+  auto const [least, most] = std::minmax_element(y.values.begin(), y.values.end());
+  double const wanted = *std::min_element(o.errors.begin(), o.errors.end()) * (*most - *least);
+  if (double const error = interpolation_error(y); error > wanted && *most > *least)
+    throw InvalidInput("equal_error.not_smooth",
+                       {"The output \"", ErrorObject{name}, "\" is not smooth: with every second state its ",
+                        "interpolation changes by ", ErrorValue{error}, ", but the smallest wanted error is ", wanted,
+                        ". Shorten the steps, or choose an output without jumps."});
+}
+
+/// Completes a simulation of a study and stores its results in `run`, and the times of the samples in `r`.
+/// \param y the output of a state
+template <class Run>
+void complete_run(Run& simulation, StudyRun& run, StudyRunKind kind, std::function<double(State const&)> const& y,
+                  EqualErrorOptions const& o, EqualErrorReport& r) {
+  std::clock_t const begin = std::clock();
+  if (kind == StudyRunKind::time) {
+    simulation.run();
+    run.cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
+    return;
+  }
+  OutputHistory outputs, energies;
+  auto const note = [&] {
+    auto const& now = simulation.now();
+    outputs.times.push_back(now.t);
+    outputs.values.push_back(y(now));
+    if (kind == StudyRunKind::record_energy) energies.values.push_back(now.energy().total());
+  };
+  note();
+  run.cpu = 0.0;
+  while (!simulation.done()) {
+    std::clock_t const start = std::clock();
+    simulation.advance();
+    run.cpu += double(std::clock() - start) / CLOCKS_PER_SEC;
+    note();
+  }
+  if (kind == StudyRunKind::record_energy) require_smooth(outputs, o, r.output);
+  RunReport const& report = simulation.report();
+  run.steps = report.steps;
+  run.iterations = report.iterations;
+  run.factorisations = report.factorisations;
+  sample(outputs, o.samples, r.times, run.y);
+  if (kind != StudyRunKind::record_energy) return;
+  energies.times = outputs.times;
+  sample(energies, o.samples, r.times, run.energy);
+}
+
+/// Initial state of a run. Before a run of the kind `perturb`, each coordinate changes by one unit in the last place.
+inline State first_state(State x, StudyRunKind kind) {
+  if (kind == StudyRunKind::perturb)
+    for (double& q : x.q) q = std::nextafter(q, std::numeric_limits<double>::infinity());
+  return x;
+}
+
+/// Checks an axis of a study: at least three positive values, ascending or descending.
+/// \throws InvalidInput otherwise.
+template <class T>
+void require_axis(std::vector<T> const& values, bool ascending, std::string const& what, std::string const& name) {
+  if (values.size() < 3)
+    throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": at least three ", what,
+                                            " are needed to observe an order, but the study has ",
+                                            ErrorValue{values.size()}, ". Add to the list."});
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    bool const ordered = k == 0 || (ascending ? values[k] > values[k - 1] : values[k] < values[k - 1]);
+    if (!(values[k] > T(0)) || !ordered)
+      throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": the ", what, " must be positive and ",
+                                              ascending ? "ascending" : "descending", ", but entry ", k, " is ",
+                                              ErrorValue{values[k]}, "."});
+  }
+}
+
+}  // namespace detail
+
+/// Comparison at equal error of formulations that are added one by one, in one or several source files:
+///
+///     EqualErrorStudy study({.elements = {5, 10, 20, 40}, .steps = {5e-3, 2.5e-3, 1.25e-3}});
+///     study.add(Arm{}, Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>{"LRVF"}, {.model = "beam with shear"});
+///     study.add(Arm{}, Formulation<planar::AncfCable<>, Constraint, GeneralisedAlpha>{"cable"}, {.model = "cable"});
+///     std::cout << study.run();
+///
+/// The case creates its flexible body by `formulation.body(bar)`, with the mesh that the study has set in
+/// `formulation.mesh`. Every state of a run is sampled, so the output must be smooth between the states.
+class EqualErrorStudy {
+ public:
+  /// \throws InvalidInput if a wanted error or the number of samples is not positive.
+  explicit EqualErrorStudy(EqualErrorOptions options) : options_(std::move(options)) {
+    for (double const e : options_.errors) require_positive(e, "EqualErrorStudy: a wanted error");
+    require_positive(double(options_.samples), "EqualErrorStudy: the number of samples");
+    require_positive(double(options_.repeats), "EqualErrorStudy: the number of repeats");
+  }
+
+  /// Adds a formulation. `make_case(formulation)` returns its Scenario.
+  /// \throws InvalidInput if meshes or steps are fewer than three, not positive or not in order.
+  template <class C, class F>
+    requires ComparisonCase<C, F>
+  void add(C const& make_case, F const& formulation, StudyEntry entry) {
+    StudiedFormulation f;
+    f.name = detail::name_of(formulation);
+    f.model = std::move(entry.model);
+    f.integrator = F::IntegratorType::name;
+    if constexpr (requires { F::PolicyType::name; }) f.policy = F::PolicyType::name;
+    constexpr bool controlled = requires { F::IntegratorType::adaptive_step; };
+    f.step_name = controlled ? "tolerance" : "step [s]";
+    if (F::has_modes && !options_.modes.empty())
+      f.mesh_name = "modes";
+    else if (F::has_mesh)
+      f.mesh_name = "elements";
+    bool const modal = f.mesh_name == "modes";
+    f.family = detail::family_of(formulation, modal);
+    if (entry.meshes.empty() && !f.mesh_name.empty()) entry.meshes = modal ? options_.modes : options_.elements;
+    if (entry.steps.empty()) entry.steps = controlled ? options_.tolerances : options_.steps;
+    if (!f.mesh_name.empty()) detail::require_axis(entry.meshes, true, f.mesh_name, f.name);
+    detail::require_axis(entry.steps, false, controlled ? "tolerances" : "steps", f.name);
+    if (f.mesh_name.empty()) entry.meshes = {0};
+    for (Index const mesh : entry.meshes)
+      for (double const step : entry.steps) f.runs.push_back({.mesh = mesh, .step = step});
+    runners_.push_back([make_case, formulation, modal](StudyRun& run, detail::StudyRunKind kind,
+                                                       EqualErrorOptions const& o, EqualErrorReport& r) {
+      F with_mesh = formulation;
+      if (run.mesh > 0) (modal ? with_mesh.mesh.modes : with_mesh.mesh.elements) = run.mesh;
+      auto scenario = make_case(with_mesh);
+      auto const& output = detail::output_of(scenario, o.output, "EqualErrorStudy");
+      r.output = output.name;
+      detail::set_accuracy(with_mesh.integrator, scenario.options, run.step);
+      State x = detail::first_state(scenario.start, kind);
+      auto simulation = simulate(scenario.model, x, with_mesh.integrator, scenario.options);
+      ProblemSize const size = problem_size(scenario.model);
+      run.unknowns = size.velocities + size.rows;
+      auto const y = [&](State const& now) { return output.value(scenario.model, now); };
+      detail::complete_run(simulation, run, kind, y, o, r);
+    });
+    report_.formulations.push_back(std::move(f));
+  }
+
+  /// Runs all formulations with all meshes and steps and evaluates the results. A failed run, or a formulation without
+  /// a converged result, does not end the study; the remarks of the formulation contain the reason.
+  /// \throws InvalidInput if no formulation was added, or if the output of every complete run is constant.
+  template <class = void>  // compiled where it is used
+  EqualErrorReport run() const {
+    EqualErrorReport r = report_;
+    if (r.formulations.empty())
+      throw InvalidInput("equal_error.empty",
+                         {ErrorObject{"EqualErrorStudy"}, ": there are no formulations. Call `add` for each of them."});
+    for (std::size_t i = 0; i < r.formulations.size(); ++i)
+      detail::record_formulation(r.formulations[i], runners_[i], options_, r);
+    double largest = 0.0;
+    for (StudiedFormulation const& f : r.formulations) {
+      if (f.finest().y.empty()) continue;
+      auto const [least, most] = std::minmax_element(f.finest().y.begin(), f.finest().y.end());
+      r.span = std::max(r.span, *most - *least);
+      largest = std::max({largest, std::abs(*least), std::abs(*most)});
+    }
+    if (largest > 0.0 && r.span <= 1e-12 * largest)
+      throw InvalidInput("equal_error.constant", {"EqualErrorStudy: the output \"", ErrorObject{r.output},
+                                                  "\" is constant, so relative errors are undefined. Choose another "
+                                                  "output."});
+    for (StudiedFormulation& f : r.formulations) detail::find_limit(f, r.span);
+    detail::find_references(r);
+    detail::rank(r, options_.errors);
+    detail::time_again(r, runners_, options_);
+    detail::mark_front(r);
+    return r;
+  }
+
+ private:
+  EqualErrorOptions options_;
+  EqualErrorReport report_;
+  std::vector<detail::StudyRunner> runners_;
+};
+
+}  // namespace polybody
