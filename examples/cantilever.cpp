@@ -1,10 +1,13 @@
 // The clamped beam of Chapter 2 under a moment at its tip (Figures 2.9 and 2.10), and the same beam rolled into a full
 // circle under several formulations.
 //   cantilever --case all --out out/cantilever
-//   cantilever --case compare --viewer build/release/polybody_viewer.html --film beam.html
+//   cantilever --case compare --body lrvf,ancf --error 1e-2,1e-3      # at equal error
+//   cantilever --case run --body ffr-modal --integrator hht,radau     # --list: the combinations
+//   cantilever --case equal-mesh --viewer build/release/polybody_viewer.html --film beam.html
 #include <numbers>
 
 #include "chapter2_film.hpp"
+#include "chapter2_formulations.hpp"
 #include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
@@ -14,11 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
-  std::string which = "all";
-  std::string body = "lrvf";
-  Index elements = 10;
-  double step = 5e-3;
+struct Options : FormulationOptions {
+  std::string body;  // of the figures
   double density = 7850.0;
   double end_time = 20.0;
   double moment = 30e3;
@@ -161,7 +161,7 @@ struct BeamCase {
     State const start = beam.model.reference_state();
     auto const tip = beam.beam.at(length);
     std::function<void(M const&, State const&)> observer;
-    if (film) observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), beam.beam, visible_bar(low, o.density));
+    if (film) observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), beam.beam, solid_bar(low, o.density));
     return Scenario<M>{std::move(beam.model),
                        start,
                        {.end_time = std::min(o.end_time, 4.0), .step = o.step},
@@ -171,7 +171,7 @@ struct BeamCase {
   }
 };
 
-void comparison(Options const& o) {
+void equal_meshes(Options const& o) {
   GeneralisedAlpha const implicit{.rho_inf = 0.8};
   std::shared_ptr<Film> film;
   if (!o.film.empty())
@@ -186,28 +186,35 @@ void comparison(Options const& o) {
   if (film) film->write(o.film);
 }
 
+Problem problem_of(Options const& o) {
+  return {.mechanism = Mechanism::cantilever,
+          .motion = "clamped beam, " + number(1e-3 * o.moment) + " kN m at its tip",
+          .setup = {.stiffness = o.chosen_stiffness(), .density = o.density, .moment = o.moment},
+          .end_time = o.which == "run" ? o.end_time : std::min(o.end_time, 4.0),
+          .output = "tip y [m]",
+          .output_value = [](double, Vec3 const& tip) { return tip[1]; }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options o;
+  o.stiffness = low.name;
   CommandLine line{
       "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
-  line.one_of("--case", &o.which, {"all", "moment", "roll-up", "compare"}, "what to run");
-  line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering"},
-              "formulation of the case 'moment'; only lrvf has two meshes");
-  line.positive("--elements", &o.elements, "number of elements of the beam");
-  line.positive("--step", &o.step, "time step [s]");
-  line.positive("--until", &o.end_time, "end of the run [s]");
+  add_formulation_options(line, o, {"moment", "roll-up", "equal-mesh"});
+  line.positive("--until", &o.end_time, "end of the run [s]; at most 4 s in comparisons");
   line.option("--moment", &o.moment, "moment at the tip [N m]");
   line.positive("--density", &o.density, "density, which the thesis does not give [kg/m^3]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
-  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
-  line.option("--film", &o.film,
-              "file for a film of the case 'compare'; default with --viewer: film.html in the folder --out");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film, "film of the case 'equal-mesh'; with a viewer, film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";
   try {
+    if (o.is_of_formulations()) return run_formulations(o, problem_of(o)) ? 0 : 1;
+    o.body = o.body_of_figures({"lrvf", "ancf", "ancf-engineering"});
     bool const all = o.which == "all";
     if (all || o.which == "moment") {
       if (o.body == "lrvf") tip_moment<planar::Lrvf>(o);
@@ -215,7 +222,7 @@ int main(int argc, char** argv) {
       if (o.body == "ancf-engineering") tip_moment<planar::AncfCable<EngineeringStrain>>(o);
     }
     if (all || o.which == "roll-up") roll_up_all(o);
-    if (all || o.which == "compare") comparison(o);
+    if (all || o.which == "equal-mesh") equal_meshes(o);
   } catch (Error const& e) {
     std::cerr << "cantilever: " << e.what() << '\n';
     return 1;

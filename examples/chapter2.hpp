@@ -1,6 +1,6 @@
 #pragma once
-// The models of Chapter 2 of M. Wallin's thesis (2016), for any planar body: a flexible robot arm whose angle is
-// prescribed, and a clamped beam under a tip moment. Shared by the examples and their tests.
+// The models of Chapter 2 of M. Wallin's thesis (2016), for any body, planar or spatial: a flexible robot arm whose
+// angle is prescribed, and a clamped beam under a tip moment. Shared by the examples and their tests.
 //
 // Table 2.1 gives stiffnesses in the ratio EA : GA : EI = 1 : 1/2 : 1/12, those of a section of 1 m x 1 m without
 // lateral contraction. The thesis does not give the mass. It follows from the section and from the density, which is an
@@ -33,14 +33,36 @@ inline Bar bar(Stiffness const& s, double density) {
                                     .EI = s.EI,
                                     .mass_per_length = density * area,
                                     .GA = s.GA,
+                                    .GJ = 0.1406 * s.GA,  // G J of a square [Timoshenko & Goodier 1970, §109]
                                     .rotary_inertia = density * area / 12.0}};
+}
+// The bar with the section and the material that its constants come from.
+inline Bar solid_bar(Stiffness const& s, double density) {
+  return {.length = length,
+          .section = Rectangle{.height = 1.0, .width = 1.0},
+          .material = Material{.density = density, .young = s.EA, .poisson = 0.0},
+          .shear_factor = s.GA / (0.5 * s.EA)};
+}
+
+// Joints of body B that permit the rotation about the normal of the plane, and no motion.
+template <class B>
+using PinOf = std::conditional_t<B::world == World::plane, planar::Revolute, Revolute>;
+template <class B>
+using ClampOf = std::conditional_t<B::world == World::plane, planar::Weld, Weld>;
+template <class B>
+PinOf<B> pin_of() {
+  if constexpr (B::world == World::plane)
+    return {};
+  else
+    return {.axis = Vec3::UnitZ()};
 }
 
 // Arm on a pin at the origin. The angle of its first section is prescribed. An axial follower force of constant
 // magnitude may act at the tip.
 template <class B, class P = Constraint>
 struct RobotArm {
-  using Pin = Joint<planar::Revolute, P>;
+  using Pin = Joint<PinOf<B>, P>;
+  using FirstJoint = Pin;
   using Drive = Joint<PrescribedAngle<Ramp>, Constraint>;
   using Model = polybody::Model<Bodies<B>, Joints<Pin, Drive>, Forces<PointForce<>>>;
 
@@ -48,30 +70,38 @@ struct RobotArm {
   BodyHandle<B> arm;
   ElementHandle<Pin> pin;
 
-  RobotArm(Bar const& spec, Index elements, double ramp, double axial_force = 0.0, P policy = {})
-      : arm(model.add(B::from(spec, {.elements = elements}), "arm")),
-        pin(model.connect(Joint{planar::Revolute{}, policy}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin")) {
-    model.connect(Drive{{Ramp{.target = angle, .duration = ramp}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0),
-                  "drive");
+  RobotArm(B const& body, double ramp, double axial_force = 0.0, P policy = {})
+      : arm(model.add(body, "arm")),
+        pin(model.connect(Joint{pin_of<B>(), policy}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin")) {
+    model.connect(Drive{{Ramp{.target = angle, .duration = ramp}, Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
+                  arm.at(0.0), "drive");
     if (axial_force != 0.0)
       model.apply(PointForce<>{.force = {axial_force, 0, 0}, .axes = LoadAxes::marker}, arm.at(length), "tip force");
   }
+  RobotArm(Bar const& spec, Index elements, double ramp, double axial_force = 0.0, P policy = {})
+      : RobotArm(B::from(spec, {.elements = elements}), ramp, axial_force, policy) {}
+
+  BodyHandle<B> const& body() const { return arm; }
 };
 
-// Beam that is clamped at the origin, with a moment about z [N m] at its tip.
-template <class B>
+// The beam is clamped at the origin and a moment about z acts at its tip.
+template <class B, class P = Constraint>
 struct Cantilever {
-  using Clamp = Joint<planar::Weld, Constraint>;
+  using Clamp = Joint<ClampOf<B>, P>;
+  using FirstJoint = Clamp;
   using Model = polybody::Model<Bodies<B>, Joints<Clamp>, Forces<PointMoment<>>>;
 
   Model model;
   BodyHandle<B> beam;
 
-  Cantilever(Bar const& spec, Index elements, double moment)
-      : beam(model.add(B::from(spec, {.elements = elements}), "beam")) {
-    model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp");
-    model.apply(PointMoment<>{.moment = {0, 0, moment}}, beam.at(double(spec.length)), "tip moment");
+  Cantilever(B const& body, double moment, P policy = {}) : beam(model.add(body, "beam")) {
+    model.connect(Clamp{{}, policy}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp");
+    model.apply(PointMoment<>{.moment = {0, 0, moment}}, beam.at(length), "tip moment");
   }
+  Cantilever(Bar const& spec, Index elements, double moment)
+      : Cantilever(B::from(spec, {.elements = elements}), moment) {}
+
+  BodyHandle<B> const& body() const { return beam; }
 };
 
 }  // namespace chapter2

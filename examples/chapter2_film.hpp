@@ -16,13 +16,6 @@ inline FilmOptions film_options(std::filesystem::path const& viewer, std::string
           .floor = FilmFloor::behind};
 }
 
-// Bar with the section and the material from which the constants of s follow.
-inline Bar visible_bar(Stiffness const& s, double density) {
-  return {.length = length,
-          .section = Rectangle{.height = 1.0, .width = 1.0},
-          .material = Material{.density = density, .young = s.EA, .poisson = 0.0}};
-}
-
 // Observer of a run that records the frames of one scene; each call passes the model.
 template <class M, class B>
 class BarFilm {

@@ -1,9 +1,12 @@
 // The flexible robot arm of Chapter 2 (Figures 2.4 to 2.8) under several formulations, side by side.
 //   robot_arm --case all --out out/robot_arm
-//   robot_arm --case compare --viewer build/release/polybody_viewer.html --film arm.html
+//   robot_arm --case compare --body lrvf,ancf --error 1e-2,1e-3       # at equal error
+//   robot_arm --case run --body ffr-modal --integrator hht,radau      # --list: the combinations
+//   robot_arm --case equal-mesh --viewer build/release/polybody_viewer.html --film arm.html
 
 #include "chapter2_energy.hpp"
 #include "chapter2_film.hpp"
+#include "chapter2_formulations.hpp"
 #include "chapter2_meshes.hpp"
 #include "chapter2_plots.hpp"
 #include "support/command_line.hpp"
@@ -13,11 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
-  std::string which = "all";
-  std::string body = "lrvf";
-  Index elements = 10;
-  double step = 5e-3;
+struct Options : FormulationOptions {
+  std::string body;  // of the figures
   double density = 7850.0;
   double slow_ramp = 10.0;
   double end_time = 0.0;
@@ -136,6 +136,12 @@ void run_case(Options const& o, Case const& c) {
   if constexpr (two_meshes) watch.tell();
 }
 
+// Distance of the tip behind the rigid arm [m].
+double lag_of(double t, Vec3 const& tip, double ramp) {
+  double const psi = Ramp{.target = angle, .duration = ramp}(t).value;
+  return std::sin(psi) * tip[0] - std::cos(psi) * tip[1];
+}
+
 // The arm under other bodies, joints and integrators.
 struct ArmCase {
   Options const& o;
@@ -153,14 +159,11 @@ struct ArmCase {
     std::vector<Output<M>> outputs;
     outputs.push_back({"tip x [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[0]; }});
     outputs.push_back({"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }});
-    outputs.push_back({"lag of the tip [m]", [tip, this](M const& m, State const& x) {
-                         double const psi = Ramp{.target = angle, .duration = ramp}(x.t).value;
-                         Vec3 const r = position(m, x, tip);
-                         return std::sin(psi) * r[0] - std::cos(psi) * r[1];
-                       }});
+    outputs.push_back({"lag of the tip [m]",
+                       [tip, this](M const& m, State const& x) { return lag_of(x.t, position(m, x, tip), ramp); }});
     std::function<void(M const&, State const&)> observer;
     if (film)
-      observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), arm.arm, visible_bar(stiffness, o.density));
+      observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), arm.arm, solid_bar(stiffness, o.density));
     return Scenario<M>{std::move(arm.model),
                        start,
                        {.end_time = o.end_time > 0.0 ? o.end_time : 1.5 * ramp, .step = o.step},
@@ -174,7 +177,7 @@ std::shared_ptr<Film> film_of(Options const& o) {
   return std::make_shared<Film>(film_options(o.viewer, "The robot arm of medium stiffness, 1.5 rad in 4.5 s"));
 }
 
-void comparison(Options const& o) {
+void equal_meshes(Options const& o) {
   GeneralisedAlpha const implicit{.rho_inf = 0.8};
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
   std::shared_ptr<Film> const film = film_of(o);
@@ -229,39 +232,47 @@ void run_cases(Options const& o) {
     if (o.which == "all" || o.which == c.name) run_case<B>(o, c);
 }
 
+Problem problem_of(Options const& o) {
+  double const ramp = 4.5;
+  return {.mechanism = Mechanism::arm,
+          .motion = "arm driven by 1.5 rad in 4.5 s",
+          .setup = {.stiffness = o.chosen_stiffness(), .density = o.density, .ramp = ramp},
+          .end_time = o.end_time > 0.0 ? o.end_time : 1.5 * ramp,
+          .output = "lag of the tip [m]",
+          .output_value = [ramp](double t, Vec3 const& tip) { return lag_of(t, tip, ramp); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options o;
+  o.stiffness = medium.name;
   CommandLine line{
       "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
-  line.one_of("--case", &o.which,
-              {"all", "angle", "high", "medium", "fast-medium", "fast-low", "axial", "compare", "energy"},
-              "what to run");
-  line.one_of("--body", &o.body, {"lrvf", "ancf", "ancf-engineering", "rigid"},
-              "formulation of the snapshots; only lrvf has two meshes");
-  line.positive("--elements", &o.elements, "number of elements of the arm");
-  line.positive("--step", &o.step, "time step [s]");
-  line.not_negative("--until", &o.end_time, "end of the run [s]; 0: the end of the ramp");
-  line.positive("--density", &o.density, "density, which the thesis does not give [kg/m^3]");
-  line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, which the thesis does not give [s]");
+  add_formulation_options(line, o,
+                          {"angle", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh", "energy"});
+  line.not_negative("--until", &o.end_time,
+                    "end of the run [s]; 0: the end of the ramp, in comparisons 1.5 times that");
+  line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
+  line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
   line.positive("--stiffer", &o.stiffer,
                 "factor of EA and GA in the snapshots; a large factor prevents stretch and shear");
   line.positive("--window", &o.window, "duration of the case 'energy' after the ramp [s]");
   line.option("--out", &o.out, "folder for CSV files and pictures");
-  line.option("--viewer", &o.viewer, "viewer of films: polybody_viewer.html, which the CMake target 'viewer' builds");
-  line.option("--film", &o.film,
-              "file for a film of the case 'compare'; default with --viewer: film.html in the folder --out");
+  line.option("--viewer", &o.viewer, "page that plays films: polybody_viewer.html, which the target 'viewer' makes");
+  line.option("--film", &o.film, "film of the case 'equal-mesh'; with a viewer, film.html in the folder --out");
   line.flag("--no-plot", &o.no_plot, "write the scripts but draw nothing");
   if (auto const code = line.parse(argc, argv)) return *code;
   if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";
   try {
+    if (o.is_of_formulations()) return run_formulations(o, problem_of(o)) ? 0 : 1;
+    o.body = o.body_of_figures({"lrvf", "ancf", "ancf-engineering", "rigid"});
     if (o.which == "all" || o.which == "angle") figure_2_4(o);
     if (o.body == "lrvf") run_cases<planar::Lrvf>(o);
     if (o.body == "ancf") run_cases<planar::AncfCable<GreenStrain>>(o);
     if (o.body == "ancf-engineering") run_cases<planar::AncfCable<EngineeringStrain>>(o);
     if (o.body == "rigid") run_cases<planar::Rigid>(o);
-    if (o.which == "all" || o.which == "compare") comparison(o);
+    if (o.which == "all" || o.which == "equal-mesh") equal_meshes(o);
     if (o.which == "all" || o.which == "energy") energies(o);
   } catch (Error const& e) {
     std::cerr << "robot_arm: " << e.what() << '\n';

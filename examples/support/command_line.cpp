@@ -11,10 +11,23 @@ std::string finite(std::string const& text) {
   return number && !std::isfinite(x) ? "'" + text + "' is not a finite number" : "";
 }
 
+template <class T>
+inline constexpr bool is_list = false;
+template <class T>
+inline constexpr bool is_list<std::vector<T>> = true;
+
 CLI::Option* add(CLI::App& app, std::string const& name, CommandLine::Value value, std::string const& help) {
-  CLI::Option* const option = std::visit([&](auto* to) { return app.add_option(name, *to, help); }, value);
-  if (std::holds_alternative<double*>(value)) option->check(CLI::Validator(finite, "", "finite"));
-  if (auto* const* text = std::get_if<std::string*>(&value); !text || !(*text)->empty()) option->capture_default_str();
+  auto const to_option = [&](auto* to) {
+    using T = std::remove_pointer_t<decltype(to)>;
+    CLI::Option* const option = app.add_option(name, *to, help);
+    bool has_default = true;
+    if constexpr (is_list<T>) option->delimiter(',');
+    if constexpr (is_list<T> || std::is_same_v<T, std::string>) has_default = !to->empty();
+    return has_default ? option->capture_default_str() : option;
+  };
+  CLI::Option* const option = std::visit(to_option, value);
+  if (std::holds_alternative<double*>(value) || std::holds_alternative<std::vector<double>*>(value))
+    option->check(CLI::Validator(finite, "", "finite"));
   return option;
 }
 }  // namespace
@@ -34,7 +47,7 @@ void CommandLine::not_negative(std::string const& name, Value value, std::string
 void CommandLine::between(std::string const& name, Value value, double least, double most, std::string const& help) {
   add(*app_, name, value, help)->check(CLI::Range(least, most));
 }
-void CommandLine::one_of(std::string const& name, std::string* value, std::vector<std::string> const& all,
+void CommandLine::one_of(std::string const& name, Value value, std::vector<std::string> const& all,
                          std::string const& help, std::string const& alone) {
   CLI::Option* const option = add(*app_, name, value, help)->check(CLI::IsMember(all));
   if (!alone.empty()) option->expected(0, 1)->default_str(alone);
