@@ -69,7 +69,7 @@ template <MarkerKind observed>
 inline constexpr auto words_of<GuideHornContact<observed>> = words("tip", "play", "radius");
 template <>
 inline constexpr auto words_of<SprocketProfile> =
-    words("teeth|tips", "pitch|tips|valleys", "pins|tips", "valleys", "arc of a valley|valleys|valley's arc", "tip");
+    words("teeth|tip radius", "pitch|tip radius|valley", "pin|tip radius", "valley", "arc of a valley|valley", "tip");
 template <MarkerKind observed>
 inline constexpr auto words_of<PinSprocketContact<observed>> =
     words("profile", "valley", "ring", "position of the pin");
