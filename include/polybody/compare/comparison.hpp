@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <limits>
 #include <ostream>
+#include <span>
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
@@ -142,7 +143,7 @@ namespace detail {
 /// value at this end. Points closer to their neighbour than a tenth of the interval around t are omitted, because their
 /// differences are mainly round-off.
 template <class = void>
-double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
+double interpolate(std::span<double const> times, std::span<double const> y, double t) {
   auto const after = std::lower_bound(times.begin(), times.end(), t);
   if (after == times.begin()) return y.front();
   if (after == times.end()) return y.back();

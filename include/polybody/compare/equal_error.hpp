@@ -62,17 +62,24 @@ void sample(OutputHistory const& y, Index samples, std::vector<double>& times, s
 }
 
 /// Error of interpolation in a recorded output: largest difference between the output and its interpolation through
-/// every second state.
+/// every second state. States near the start, the end and breakpoints are not compared.
 template <class = void>
 double interpolation_error(OutputHistory const& y) {
-  OutputHistory half;
-  for (std::size_t k = 0; k < y.times.size(); k += 2) {
+  OutputHistory half{.times = {}, .values = {}, .breakpoints = y.breakpoints};
+  std::vector<std::size_t> omitted;
+  for (std::size_t k = 0; k < y.times.size(); ++k) {
+    bool const is_breakpoint = std::binary_search(y.breakpoints.begin(), y.breakpoints.end(), y.times[k]);
+    if (k > 0 && half.times.back() == y.times[k - 1] && !is_breakpoint) {
+      omitted.push_back(k);
+      continue;
+    }
     half.times.push_back(y.times[k]);
     half.values.push_back(y.values[k]);
   }
   double most = 0.0;
-  for (std::size_t k = 3; k + 4 < y.times.size(); k += 2)
-    most = std::max(most, std::abs(half(y.times[k]) - y.values[k]));
+  for (std::size_t const k : omitted)
+    if (auto const [first, last] = y.piece(y.times[k]); k >= first + 3 && k + 4 < last)
+      most = std::max(most, std::abs(half(y.times[k]) - y.values[k]));
   return most;
 }
 
@@ -130,23 +137,44 @@ void time_again(EqualErrorReport& r, std::vector<StudyRunner> const& runners, Eq
                      [&](CheapestRun const& a, CheapestRun const& b) { return cpu(a) < cpu(b); });
 }
 
-/// \throws InvalidInput if interpolation between the states changes the output by more than the smallest wanted error.
+/// Removes the result of the finest run of a formulation, with a remark, if interpolation between its states changes
+/// the output by more than the smallest wanted error `least` [unit of the output].
 template <class = void>
-void require_smooth(OutputHistory const& y, EqualErrorOptions const& o, std::string const& name) {
-  auto const [least, most] = std::minmax_element(y.values.begin(), y.values.end());
-  double const wanted = *std::min_element(o.errors.begin(), o.errors.end()) * (*most - *least);
-  if (double const error = interpolation_error(y); error > wanted && *most > *least)
-    throw InvalidInput("equal_error.not_smooth",
-                       {"The output \"", ErrorObject{name}, "\" is not smooth: with every second state its ",
-                        "interpolation changes by ", ErrorValue{error}, ", but the smallest wanted error is ", wanted,
-                        ". Shorten the steps, or choose an output without jumps."});
+void require_smooth(StudiedFormulation& f, double least, std::string const& output) {
+  StudyRun& fine = f.runs.back();
+  if (fine.y.empty() || fine.interpolation_error <= least) return;
+  f.remarks.push_back("no reference: the output \"" + output + "\" is not smooth: with every second state its " +
+                      "interpolation changes by " + number(fine.interpolation_error, 3) +
+                      ", but the smallest wanted error is " + number(least, 3) +
+                      ". Shorten the steps, or choose an output without jumps.");
+  fine.y.clear();
+}
+
+/// Stores the largest span of the outputs of the finest runs of selected formulations. Without a selected formulation
+/// that has an output which varies, the span stays.
+/// \throws InvalidInput if all selected outputs are constant and no span was found before.
+template <class Select>
+void find_span(EqualErrorReport& r, Select&& selects) {
+  double span = 0.0, largest = 0.0;
+  for (StudiedFormulation const& f : r.formulations) {
+    if (!selects(f)) continue;
+    auto const [least, most] = std::minmax_element(f.finest().y.begin(), f.finest().y.end());
+    span = std::max(span, *most - *least);
+    largest = std::max({largest, std::abs(*least), std::abs(*most)});
+  }
+  if (span > 1e-12 * largest)
+    r.span = span;
+  else if (largest > 0.0 && r.span == 0.0)
+    throw InvalidInput("equal_error.constant", {"EqualErrorStudy: the output \"", ErrorObject{r.output},
+                                                "\" is constant, so relative errors are undefined. Choose another "
+                                                "output."});
 }
 
 /// Completes a simulation of a study and stores its results in `run`, and the times of the samples in `r`.
 /// \param y the output of a state
 template <class Run>
-void complete_run(Run& simulation, StudyRun& run, StudyRunKind kind, std::function<double(State const&)> const& y,
-                  EqualErrorOptions const& o, EqualErrorReport& r) {
+void complete_run(Run& simulation, RunOptions const& options, StudyRun& run, StudyRunKind kind,
+                  std::function<double(State const&)> const& y, EqualErrorOptions const& o, EqualErrorReport& r) {
   std::clock_t const begin = std::clock();
   if (kind == StudyRunKind::time) {
     simulation.run();
@@ -154,6 +182,7 @@ void complete_run(Run& simulation, StudyRun& run, StudyRunKind kind, std::functi
     return;
   }
   OutputHistory outputs, energies;
+  outputs.breakpoints = energies.breakpoints = detail::breakpoints_of(simulation, options);
   auto const note = [&] {
     auto const& now = simulation.now();
     outputs.times.push_back(now.t);
@@ -168,13 +197,13 @@ void complete_run(Run& simulation, StudyRun& run, StudyRunKind kind, std::functi
     run.cpu += double(std::clock() - start) / CLOCKS_PER_SEC;
     note();
   }
-  if (kind == StudyRunKind::record_energy) require_smooth(outputs, o, r.output);
   RunReport const& report = simulation.report();
   run.steps = report.steps;
   run.iterations = report.iterations;
   run.factorisations = report.factorisations;
   sample(outputs, o.samples, r.times, run.y);
   if (kind != StudyRunKind::record_energy) return;
+  run.interpolation_error = interpolation_error(outputs);
   energies.times = outputs.times;
   sample(energies, o.samples, r.times, run.energy);
 }
@@ -261,7 +290,7 @@ class EqualErrorStudy {
       ProblemSize const size = problem_size(scenario.model);
       run.unknowns = size.velocities + size.rows;
       auto const y = [&](State const& now) { return output.value(scenario.model, now); };
-      detail::complete_run(simulation, run, kind, y, o, r);
+      detail::complete_run(simulation, scenario.options, run, kind, y, o, r);
     });
     report_.formulations.push_back(std::move(f));
   }
@@ -277,20 +306,15 @@ class EqualErrorStudy {
                          {ErrorObject{"EqualErrorStudy"}, ": there are no formulations. Call `add` for each of them."});
     for (std::size_t i = 0; i < r.formulations.size(); ++i)
       detail::record_formulation(r.formulations[i], runners_[i], options_, r);
-    double largest = 0.0;
-    for (StudiedFormulation const& f : r.formulations) {
-      if (f.finest().y.empty()) continue;
-      auto const [least, most] = std::minmax_element(f.finest().y.begin(), f.finest().y.end());
-      r.span = std::max(r.span, *most - *least);
-      largest = std::max({largest, std::abs(*least), std::abs(*most)});
+    detail::find_span(r, [](StudiedFormulation const& f) { return !f.finest().y.empty(); });
+    double const least = *std::min_element(options_.errors.begin(), options_.errors.end()) * r.span;
+    for (StudiedFormulation& f : r.formulations) {
+      detail::require_smooth(f, least, r.output);
+      detail::find_limit(f, r.span);
     }
-    if (largest > 0.0 && r.span <= 1e-12 * largest)
-      throw InvalidInput("equal_error.constant", {"EqualErrorStudy: the output \"", ErrorObject{r.output},
-                                                  "\" is constant, so relative errors are undefined. Choose another "
-                                                  "output."});
-    for (StudiedFormulation& f : r.formulations) detail::find_limit(f, r.span);
+    detail::find_span(r, [](StudiedFormulation const& f) { return !f.limit.empty(); });
     detail::find_references(r);
-    detail::rank(r, options_.errors);
+    if (r.span > 0.0) detail::rank(r, options_.errors);
     detail::time_again(r, runners_, options_);
     detail::mark_front(r);
     return r;

@@ -19,18 +19,19 @@ namespace polybody {
 
 /// One run of a formulation with one mesh and one step.
 struct StudyRun {
-  Index mesh = 0;                   ///< number of elements, or of modes; 0 for a body without mesh
-  double step = 0.0;                ///< step [s], or relative tolerance of an integrator with step size control
-  double cpu = 0.0;                 ///< CPU time of the steps [s], median of the repeated runs
-  double least_cpu = 0.0;           ///< least CPU time of the repeated runs [s]
-  double most_cpu = 0.0;            ///< largest CPU time of the repeated runs [s]
-  int timings = 0;                  ///< number of timed runs
-  Index unknowns = 0;               ///< velocities and multipliers of the integrator
-  long steps = 0;                   ///< number of steps
-  long iterations = 0;              ///< number of Newton iterations
-  long factorisations = 0;          ///< number of factorisations
-  std::vector<double> y = {};       ///< output at `times` of the report [unit of the output]; empty for a failed run
-  std::vector<double> energy = {};  ///< total energy at `times` [J]; only for the finest mesh and the shortest step
+  Index mesh = 0;                    ///< number of elements, or of modes; 0 for a body without mesh
+  double step = 0.0;                 ///< step [s], or relative tolerance of an integrator with step size control
+  double cpu = 0.0;                  ///< CPU time of the steps [s], median of the repeated runs
+  double least_cpu = 0.0;            ///< least CPU time of the repeated runs [s]
+  double most_cpu = 0.0;             ///< largest CPU time of the repeated runs [s]
+  int timings = 0;                   ///< number of timed runs
+  Index unknowns = 0;                ///< velocities and multipliers of the integrator
+  long steps = 0;                    ///< number of steps
+  long iterations = 0;               ///< number of Newton iterations
+  long factorisations = 0;           ///< number of factorisations
+  std::vector<double> y = {};        ///< output at `times` of the report [unit of the output]; empty for a failed run
+  std::vector<double> energy = {};   ///< total energy at `times` [J]; only for the finest mesh and the shortest step
+  double interpolation_error = 0.0;  ///< change of y if it is interpolated through every second state; of the same run
   double error = std::numeric_limits<double>::quiet_NaN();  ///< discretisation error [unit of the output]
   bool on_front = false;     ///< true if no run of the study has both a smaller error and a smaller CPU time
   std::string failure = {};  ///< message of a failed run
@@ -207,6 +208,7 @@ void print_meshes(std::ostream& out, EqualErrorReport const& r) {
 template <class = void>  // compiled where it is used
 std::ostream& operator<<(std::ostream& out, EqualErrorReport const& r) {
   out << "Comparison at equal error. Output: " << r.output << ", span " << number(r.span, 4) << ".\n";
+  if (r.rankings.empty()) out << "\nNo run with the finest mesh and the shortest step is complete.\n";
   detail::print_rankings(out, r);
   detail::print_meshes(out, r);
   out << "\nReferences of the physical models " << r.unit() << ":\n";

@@ -2,6 +2,8 @@
 /// \file
 /// Work-precision studies: error versus CPU time of one case at several steps or tolerances.
 
+#include <span>
+
 #include <polybody/compare/compare.hpp>
 
 namespace polybody {
@@ -27,11 +29,26 @@ struct WorkPrecision {
   std::vector<WorkCurve> curves;  ///< one curve for each formulation
 };
 
-/// Output y(t) of a recorded run, interpolated by cubics between the recorded times.
+/// Output y(t) of a recorded run, interpolated by cubics between the recorded times. No cubic crosses a breakpoint of
+/// the run, because derivatives of the output may jump there.
 struct OutputHistory {
-  std::vector<double> times, values;  ///< (n) t [s] and y [unit of the output]
+  std::vector<double> times, values;     ///< (n) t [s] and y [unit of the output]
+  std::vector<double> breakpoints = {};  ///< breakpoints [s], ascending
   /// Interpolates y at time t [s].
-  double operator()(double t) const { return detail::interpolate(times, values, t); }
+  double operator()(double t) const {
+    auto const [first, last] = piece(t);
+    return detail::interpolate(std::span(times).subspan(first, last - first),
+                               std::span(values).subspan(first, last - first), t);
+  }
+  /// First index, and index after the last, of the states between the breakpoints around t [s].
+  std::pair<std::size_t, std::size_t> piece(double t) const {
+    auto const next = std::lower_bound(breakpoints.begin(), breakpoints.end(), t);
+    auto first = times.begin(), last = times.end();
+    if (next != breakpoints.begin()) first = std::lower_bound(first, last, *std::prev(next));
+    if (next != breakpoints.end()) last = std::upper_bound(first, last, *next);
+    if (first == last) return {0, times.size()};  // no state lies between the breakpoints
+    return {std::size_t(first - times.begin()), std::size_t(last - times.begin())};
+  }
 };
 
 /// Reference for an output: a function of time, a `reference_run`, or a number for the end of the run.
@@ -74,6 +91,16 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
   }
 }
 
+/// Breakpoints of a simulation, ascending [s]: those of its time functions and those of its options.
+template <class Run>
+std::vector<double> breakpoints_of(Run& simulation, RunOptions const& options) {
+  auto const& of_model = simulation.system().layout().breakpoints;
+  std::vector<double> all(of_model.begin(), of_model.end());
+  all.insert(all.end(), options.breakpoints.begin(), options.breakpoints.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
 }  // namespace detail
 
 /// Runs the case that `make_case(formulation)` returns and records its output number `output`, as a reference for other
@@ -92,7 +119,9 @@ OutputHistory reference_run(C const& make_case, F const& formulation, double set
   if constexpr (requires { decltype(integrator)::adaptive_step; })
     if (longest > 0.0) options.max_step = std::min(options.max_step.value_or(longest), longest);
   OutputHistory out;
-  for (State const& now : simulate(scenario.model, x, integrator, options)) {
+  auto simulation = simulate(scenario.model, x, integrator, options);
+  out.breakpoints = detail::breakpoints_of(simulation, options);
+  for (State const& now : simulation) {
     out.times.push_back(now.t);
     out.values.push_back(value(scenario.model, now));
   }

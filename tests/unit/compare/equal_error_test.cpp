@@ -165,6 +165,34 @@ TEST(EqualError, KeepsTheOtherResultsIfAFormulationFails) {
   EXPECT_EQ(r.rankings[0].missing.size(), 3u);
 }
 
+// If each formulation fails, the report has the reasons and no ranking.
+TEST(EqualError, ReportsReasonsIfAllFormulationsFail) {
+  EqualErrorStudy study({.elements = {2, 4, 8}, .steps = {0.05, 0.025, 0.0125}, .repeats = 1});
+  study.add(Flawed{}, Engineering{"fails"}, {.model = "fails"});
+  EqualErrorReport const r = study.run();
+  EXPECT_TRUE(r.rankings.empty());
+  std::ostringstream text;
+  text << r;
+  EXPECT_TRUE(has(text.str(), "No run with the finest mesh and the shortest step is complete."));
+  EXPECT_TRUE(has(text.str(), "gauge is broken"));
+}
+
+// Speed and acceleration of the output jump at a breakpoint of the load. Cubics do not cross it.
+TEST(EqualError, InterpolationDoesNotCrossBreakpoints) {
+  OutputHistory y;
+  y.breakpoints = {0.35};
+  for (double const t : {0.0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8}) {
+    y.times.push_back(t);
+    y.values.push_back(t < 0.35 ? t * t : 0.1225 - 3.0 * (t - 0.35) + std::pow(t - 0.35, 3));
+  }
+  for (double const t : {0.05, 0.29, 0.34}) EXPECT_NEAR(y(t), t * t, 1e-14) << t;
+  EXPECT_NEAR(y(0.35), 0.1225, 1e-14);
+  for (double const t : {0.36, 0.45, 0.77}) EXPECT_NEAR(y(t), 0.1225 - 3.0 * (t - 0.35) + std::pow(t - 0.35, 3), 1e-14);
+  // no state between two breakpoints
+  y.breakpoints = {0.35, 0.42, 0.48};
+  EXPECT_NEAR(y(0.45), -0.175, 0.02);
+}
+
 TEST(EqualError, RefusesSettingsFromWhichNoOrderFollows) {
   auto const add = [](EqualErrorOptions options) {
     return refusal([&] { EqualErrorStudy(options).add(Bending{}, Engineering{"cable"}, {.model = "cable"}); });
@@ -177,6 +205,18 @@ TEST(EqualError, RefusesSettingsFromWhichNoOrderFollows) {
                   "must be positive and descending, but entry 1 is 0.2"));
   EXPECT_TRUE(has(refusal([] { EqualErrorStudy({}).run(); }), "there are no formulations"));
   EXPECT_TRUE(has(refusal([] { EqualErrorStudy({.errors = {0.0}}); }), "a wanted error must be positive"));
+}
+
+// The output of the rigid body is constant. The span of the elastic beam makes its errors relative.
+TEST(EqualError, AcceptsAConstantOutputBesideOthers) {
+  EqualErrorStudy study({.elements = {2, 4, 8}, .steps = {0.05, 0.025, 0.0125}, .errors = {1e-1}, .repeats = 1});
+  study.add(Bending{.end_time = 8.0}, Implicit<planar::Rigid>{"rigid"}, {.model = "rigid"});
+  study.add(Bending{.end_time = 8.0}, Engineering{"cable"}, {.model = "cable"});
+  EqualErrorReport const r = study.run();
+  EXPECT_TRUE(r.formulations[0].remarks.empty()) << r.formulations[0].remarks.at(0);
+  ASSERT_EQ(r.differences.size(), 1u);
+  EXPECT_TRUE(r.differences[0].resolved());
+  EXPECT_EQ(r.rankings[0].ranked.size(), 2u);
 }
 
 // A rigid body has no mesh. Here it does not move, so relative errors are undefined.
