@@ -39,7 +39,9 @@ struct StepReport {
     add({second.iterations, second.factorisations, second.evaluations});
     rejected += second.rejected;
     halved += second.halved;
+    order = second.order;
     contraction = second.contraction;
+    choices = second.choices;
     left = std::max(left, second.left);
   }
 };

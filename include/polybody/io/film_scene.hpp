@@ -175,13 +175,17 @@ class FilmScene {
 
   /// Adds a point to the history `label`: a `value` in `unit` at time t [s]. Histories of several scenes with the same
   /// label share a plot.
-  /// \throws InvalidInput unless the times of the history increase; NonFiniteValue if t or `value` is not finite.
+  /// \throws InvalidInput unless the times of the history increase and its unit is that of the first point;
+  /// NonFiniteValue if t or `value` is not finite.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
       throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "a point of the history \"", label,
                                                "\" is not finite at t = ", ErrorTime{t}, " s."});
     auto found = std::find_if(histories_.begin(), histories_.end(), [&](auto const& h) { return h.label == label; });
     if (found == histories_.end()) found = histories_.insert(found, {label, unit});
+    if (found->unit != unit)
+      throw InvalidInput("film.unit", {ErrorObject{who()}, "the history \"", label, "\" has the unit \"", found->unit,
+                                       "\", but a further point has \"", unit, "\". Use one unit in a history."});
     if (!found->times.empty() && !(t > found->times.back()))
       throw InvalidInput("film.time_order",
                          {ErrorObject{who()}, "the times of the history \"", label,

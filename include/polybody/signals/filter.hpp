@@ -56,8 +56,8 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 /// half of the new sampling rate alias; histories with such frequencies require a smaller step.
 /// \param step time step of the result [s] \param largest_gap largest interval between given samples that is
 /// interpolated [s]; 0: 1.5 steps
-/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, for larger gaps, and for
-/// a step that is not positive.
+/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, for larger gaps, for a
+/// step that is not positive, and for more than 10⁹ samples.
 template <class = void>
 std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
                               double largest_gap = 0.0) {
@@ -70,7 +70,12 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
       throw InvalidInput("samples.gap", {ErrorObject{"resampled"}, ": there is no sample between ", times[i - 1],
                                          " s and ", times[i], " s, a gap of more than ", ErrorValue{gap},
                                          " s. Set largest_gap to the longest interval that may be interpolated."});
-  std::size_t const count = std::size_t((times.back() - times.front()) / step + 1e-6) + 1;
+  double const steps = (times.back() - times.front()) / step + 1e-6;
+  if (!(steps < 1e9))
+    throw InvalidInput("samples.too_many",
+                       {ErrorObject{"resampled"}, ": a step of ", ErrorValue{step}, " s divides ",
+                        times.back() - times.front(), " s into more than 1e9 samples. Choose a longer step."});
+  std::size_t const count = std::size_t(steps) + 1;
   std::vector<double> out;
   std::size_t after = 1;
   for (std::size_t i = 0; i < count; ++i) {

@@ -75,12 +75,17 @@ std::vector<StressCycle> rainflow(std::span<double const> history) {
 }
 
 /// Histogram of the ranges of cycles: entry k counts the cycles with ranges in [k·width, (k + 1)·width).
-/// \throws InvalidInput unless the width is positive.
+/// \throws InvalidInput unless the width is positive, and if a range has more than 10⁷ widths.
 template <class = void>
 std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   require_positive(width, "binned: the width");
+  constexpr double most = 1e7;
   std::vector<double> counts;
   for (StressCycle const& c : cycles) {
+    if (!(c.range < most * width))
+      throw InvalidInput("rainflow.width",
+                         {ErrorObject{"binned"}, ": the width must exceed 1e-7 of each range, but is ",
+                          ErrorValue{width}, " N/m² and a range is ", c.range, " N/m². Choose a larger width."});
     std::size_t const k = std::size_t(c.range / width);
     if (k >= counts.size()) counts.resize(k + 1, 0.0);
     counts[k] += c.count;

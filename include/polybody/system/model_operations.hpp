@@ -170,7 +170,7 @@ class ModelOperations {
   /// Powers of the evaluated state [W]. `backwards` is −v.
   virtual Powers powers(At<T>, VecX const& /*backwards*/, VecX const& /*lambda*/, double /*load_factor*/,
                         Data<T> const&) const {
-    missing("energies");
+    missing("powers");
   }
 
   /// Writes the generalised velocities v of a rigid motion. `v0` is the velocity of the body-fixed point at the world's

@@ -41,6 +41,10 @@ struct LinkRollerContact {
     require_positive(half_width, name, ": the link's half width");
     require_positive(radius, name, ": the radius of the roller");
     require_not_negative(chamfer, name, ": the chamfer of the link's edges");
+    if (!(chamfer < radius))
+      throw InvalidInput("track_contact.chamfer",
+                         {ErrorObject{name}, ": the chamfer must be smaller than the radius of the roller, ",
+                          double(radius), " m, but is ", ErrorValue{chamfer}, " m."});
     if (!(handover > 0.0 && handover < 0.5 * pitch))
       throw InvalidInput("track_contact.handover",
                          {ErrorObject{name}, ": the handover distance must be positive and below half the pitch, ",

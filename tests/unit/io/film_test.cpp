@@ -314,6 +314,8 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
   EXPECT_TRUE(has(message_of<NonFiniteValue>([&] { two.plot("p", "N", 0.0, std::nan("")); }), "\"p\" is not finite"));
   two.plot("p", "N", 0.0, 1.0);
   EXPECT_TRUE(has(refusal([&] { two.plot("p", "N", 0.0, 1.0); }), "must increase"));
+  EXPECT_TRUE(
+      has(refusal([&] { two.plot("p", "kN", 1.0, 1.0); }), "has the unit \"N\", but a further point has \"kN\""));
   x.q[0] = std::nan("");
   EXPECT_TRUE(
       has(message_of<NonFiniteValue>([&] { two.record(1.0, visual.at(x)); }), "\"box 1\" is not finite at t = 1 s"));

@@ -28,6 +28,7 @@ struct Fall {
   RunReport report;
   RunDriver driver;
   double longest = 1e9, part = 1.0, next_length = 0.0;
+  int order = 0;  // number of steps so far
   int starts = 0, failing_step = -1, restarts = 0, failures = 0;
   std::vector<double> ends;
   std::vector<RunStep> steps;
@@ -50,6 +51,8 @@ struct Fall {
     r.taken = part * h;
     r.next = next_length;
     r.iterations = 1;
+    r.order = ++order;
+    r.choices = order;
     y.q[1] += r.taken * (y.v[1] - 5.0 * r.taken);
     y.v[1] -= 10.0 * r.taken;
     y.t += r.taken;
@@ -102,6 +105,8 @@ TEST(RunDriver, AFailedStepIsTakenInHalvesAfterNewStarts) {
   EXPECT_EQ(fall.report.halved, 6);  // each step: itself and both halves
   EXPECT_EQ(fall.starts, 6);
   EXPECT_EQ(fall.report.iterations, 8);
+  EXPECT_EQ(fall.report.last.order, 8);  // of the last half
+  EXPECT_EQ(fall.report.last.choices, 8);
   EXPECT_NEAR(fall.x.q[1], 1.0 - 5.0 * 0.04, 1e-14);
 }
 

@@ -156,6 +156,7 @@ TEST(Filters, RefuseWhatTheyCannotUse) {
   std::vector<double> const times{0.0, 0.1, 0.4}, values{0.0, 0.0, 0.0};
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.1); }), "between 0.1 s and 0.4 s"));
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.0); }), "the step"));
+  EXPECT_TRUE(has(refusal([&] { resampled(times, values, 1e-300, 1.0); }), "into more than 1e9 samples"));
   EXPECT_TRUE(has(refusal([&] { amplitude_spectrum(times, values); }), "samples are needed"));
 }
 

@@ -125,6 +125,8 @@ TEST(Damage, RefusesCurvesThatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([] { damage({}, {.range = 1.0, .cycles = 1.0, .exponent = 0.0}); }), "exponent"));
   EXPECT_TRUE(has(refusal([] { damage({}, {.range = 1.0, .cycles = 1.0, .exponent = 3.0, .limit = -1.0}); }), "limit"));
   EXPECT_TRUE(has(refusal([] { binned({}, 0.0); }), "the width"));
+  StressCycle const one[]{{.range = 5e7, .mean = 0.0, .count = 1.0}};
+  EXPECT_TRUE(has(refusal([&] { binned(one, 1e-300); }), "must exceed 1e-7 of each range, but is 1e-300"));
 }
 
 }  // namespace rainflow_test

@@ -359,6 +359,8 @@ TEST(LinkRollerContact, RefusesNumbersThatCannotBeMeantByName) {
   }
   EXPECT_TRUE(has(told([&](auto& g) { g.handover = 0.5 * pitch; }), "below half the pitch"));
   EXPECT_TRUE(has(told([&](auto& g) { g.half_thickness = -1.0; }), "\"wheel 1\": the link's half thickness"));
+  EXPECT_TRUE(
+      has(told([&](auto& g) { g.chamfer = radius; }), "\"wheel 1\": the chamfer must be smaller than the radius"));
   EXPECT_TRUE(has(told([&](auto& g) { g.rims.clear(); }), "\"wheel 1\": a roller needs at least one rim"));
   EXPECT_TRUE(has(told([&](auto& g) { g.rims.push_back(nan); }), "\"wheel 1\": the position of a rim must be finite"));
   EXPECT_NO_THROW(two_rims.check("\"wheel 1\""));
