@@ -244,7 +244,7 @@ TEST(Compare, InterpolatesHistories) {
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 2.0), 4.0);
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, -1.0), 0.0);
   EXPECT_DOUBLE_EQ(detail::interpolate(t, y, 9.0), 6.0);
-  EXPECT_EQ(detail::interpolate({2.0}, {7.0}, 2.0), 7.0);
+  EXPECT_EQ(detail::interpolate(std::vector{2.0}, std::vector{7.0}, 2.0), 7.0);
 }
 
 // Interpolation is exact for a cubic, also if two times nearly coincide and one of their values has a round-off
