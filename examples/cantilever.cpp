@@ -148,7 +148,7 @@ void roll_up_all(Options const& o) {
   draw(shapes, o.out / "roll_up", !o.no_plot);
 }
 
-// The swinging beam under several formulations.
+// Case for `compare`: the beam under a sudden tip moment in one formulation.
 struct BeamCase {
   Options const& o;
   std::shared_ptr<Film> film = nullptr;
@@ -200,7 +200,7 @@ Problem problem_of(Options const& o) {
 int main(int argc, char** argv) {
   Options o;
   o.stiffness = low.name;
-  o.meshes = {5, 10, 20, 40, 80, 160};  // with more, the vibrations that the sudden moment excites hide the convergence
+  o.meshes = {5, 10, 20, 40, 80, 160};  // with more elements, vibrations due to the sudden moment hide the convergence
   CommandLine line{
       "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
   add_formulation_options(line, o, {"moment", "roll-up", "equal-mesh"});

@@ -13,8 +13,8 @@ using namespace polybody;
 using planar::EngineeringStrain;
 using planar::GreenStrain;
 
-// Stiffnesses of Table 2.1 [N], [N], [N m^2] with the names of their figures. The heads in the printed table name the
-// preceding figures.
+// Stiffnesses of Table 2.1 [N], [N], [N m^2]. The figure numbers in the heads of the printed table are shifted by one
+// from those in the text, which these names follow (docs/chapter2.md).
 struct Stiffness {
   std::string name;
   double EA, GA, EI;
@@ -36,7 +36,7 @@ inline Bar bar(Stiffness const& s, double density) {
                                     .GJ = 0.1406 * s.GA,  // G J of a square [Timoshenko & Goodier 1970, §109]
                                     .rotary_inertia = density * area / 12.0}};
 }
-// The bar with the section and the material that its constants come from.
+// Bar of section and material instead of constants, with the stiffnesses of `bar`.
 inline Bar solid_bar(Stiffness const& s, double density) {
   return {.length = length,
           .section = Rectangle{.height = 1.0, .width = 1.0},
@@ -44,7 +44,7 @@ inline Bar solid_bar(Stiffness const& s, double density) {
           .shear_factor = s.GA / (0.5 * s.EA)};
 }
 
-// Joints of body B that permit the rotation about the normal of the plane, and no motion.
+// Joints of body B: a pin about the normal of the plane, and a clamp.
 template <class B>
 using PinOf = std::conditional_t<B::world == World::plane, planar::Revolute, Revolute>;
 template <class B>

@@ -1,10 +1,12 @@
 #pragma once
-// The mechanisms of Chapter 2 with one body formulation on each policy: what a file of the folder chapter2 compiles.
+// The mechanisms of Chapter 2 with one body formulation and each policy. Each file of the folder chapter2 compiles them
+// for one body.
 #include "chapter2_formulations.hpp"
 
 namespace chapter2 {
 
-// The policies of --policy, with numbers that hold the pin within about a millimetre.
+// The policies of --policy. With the penalty, the tip of the arm moves by about a millimetre relative to the constraint
+// (docs/chapter2.md).
 template <class P>
 struct NamedPolicy {
   char const* name;
@@ -94,7 +96,8 @@ AnyMechanism any_mechanism(Setup const& s, FormulationMesh const& mesh, P const&
       [made, tip = made->body().at(length)](State const& x) { return position(made->model, x, tip); }};
 }
 
-// A formulation of EqualErrorStudy. Its types and its mesh select names and axes; `make` creates the mechanism.
+// Formulation for EqualErrorStudy, which takes family, policy, integrator and kind of mesh from its types. `make`
+// creates the mechanism.
 template <class B, class P, class I, MeshKind kind>
 struct StudiedFormulationOf {
   using BodyType = B;
@@ -152,7 +155,7 @@ BodyOnPolicy on_policy(BodyName const& body, NamedPolicy<P> const& policy) {
   return out;
 }
 
-// Mechanism of body B on each policy.
+// Mechanism of body B with each policy.
 template <class B, MeshKind kind = MeshKind::elements>
 std::vector<BodyOnPolicy> on_policies(Mechanism mechanism, std::string const& name, std::string const& model) {
   BodyName const body{name, model, kind};

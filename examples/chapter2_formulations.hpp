@@ -1,7 +1,7 @@
 #pragma once
 // The arm and the cantilever of Chapter 2 under each combination of body, policy and integrator: the table of the
-// combinations, single runs, and the comparison at equal error. Nothing here depends on the types of the bodies, which
-// the files of the folder chapter2 compile, one file for each body.
+// combinations, single runs, and the comparison at equal error. This header does not depend on the types of the
+// bodies. Each file of the folder chapter2 compiles one body.
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,7 +23,7 @@ struct Setup {
   double moment = 30e3;     // at the tip of the cantilever [N m]
 };
 
-// A mechanism with erased formulation.
+// Mechanism with erased types.
 struct AnyMechanism {
   AnyModel model;
   std::function<Vec3(State const&)> tip;  // position of the tip [m]
@@ -53,7 +53,7 @@ struct BodyOnPolicy {
   BodyName body;
   std::string policy;
   MakeMechanism make = {};
-  std::vector<Combination> by = {};  // for each of `integrators`
+  std::vector<Combination> by = {};  // one for each of `integrators`
 };
 
 template <class I>
@@ -67,7 +67,7 @@ inline auto const integrators = std::tuple(
     NamedIntegrator<EnergyMomentum>{"energy-momentum", {}}, NamedIntegrator<RungeKutta4<Projection>>{"runge-kutta", {}},
     NamedIntegrator<AdamsBashforthMoulton<Projection>>{"adams", {}});
 
-// Bodies of each file, on each policy of the joint.
+// Body formulations of each file, with each policy of the joint.
 std::vector<BodyOnPolicy> rigid_bodies(Mechanism);
 std::vector<BodyOnPolicy> spatial_rigid_bodies(Mechanism);
 std::vector<BodyOnPolicy> lrvf_beams(Mechanism);
@@ -78,7 +78,7 @@ std::vector<BodyOnPolicy> floating_frames(Mechanism);
 std::vector<BodyOnPolicy> elastic_line_beams(Mechanism);
 std::vector<BodyOnPolicy> continuum_beams(Mechanism);
 
-// The case and the options of the cases 'run', 'compare' and 'combinations'. Empty lists are the defaults of the case.
+// Name of the case, and options of the cases 'run', 'compare' and 'combinations'. An empty list selects the defaults.
 struct FormulationOptions {
   std::string which = "all";
   std::vector<std::string> bodies, policies, integrators;
@@ -94,7 +94,7 @@ struct FormulationOptions {
   Stiffness const& chosen_stiffness() const;
   // True for --list and the cases of this file.
   bool is_of_formulations() const;
-  // The body of the figures, which are drawn for `allowed` bodies only. Throws InvalidInput for other options.
+  // Body of the figures, one of `allowed`. Throws InvalidInput for other bodies, a policy or an integrator.
   std::string body_of_figures(std::vector<std::string> const& allowed) const;
 };
 // Adds these options, and --case with the names of the other cases before those of this file.
@@ -111,9 +111,10 @@ struct Problem {
 
   std::string title() const { return "Stiffness \"" + setup.stiffness.name + "\", " + motion; }
 };
-// The problem with one formulation.
+// Scenario of the problem in one formulation.
 Scenario<AnyModel> scenario_of(Problem const& problem, MakeMechanism const& make, FormulationMesh const& mesh);
-// Runs --list, or the case. Returns false if a run failed. Throws InvalidInput for a combination that does not exist.
+// Runs --list, or the case. Returns false if a run of 'run' or 'combinations' failed. Throws InvalidInput for a
+// combination that does not exist.
 bool run_formulations(FormulationOptions const& o, Problem const& problem);
 
 }  // namespace chapter2

@@ -7,7 +7,7 @@
 
 namespace chapter2 {
 
-// The centre line of any planar body at `samples` points.
+// Centre line of a body, as `samples` straight pieces in the plane.
 template <class M, class B>
 Curve shape_of(M const& model, State const& x, BodyHandle<B> const& handle, double bar_length, int samples = 60) {
   Curve c;
@@ -19,7 +19,7 @@ Curve shape_of(M const& model, State const& x, BodyHandle<B> const& handle, doub
   return c;
 }
 
-// The curve that the rotation field implies.
+// Rotation mesh of an Lrvf: the curve that its rotation field implies.
 template <class M>
 Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> const& handle) {
   Curve c;

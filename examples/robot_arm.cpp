@@ -104,7 +104,7 @@ void run_case(Options const& o, Case const& c) {
   State x = arm.model.reference_state();
   double const end_time = o.end_time > 0.0 ? o.end_time : c.ramp;
   Figure snapshots{
-      .title = c.title + ", one shape a second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+      .title = c.title + ", one shape per second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
   bool constexpr two_meshes = std::is_same_v<B, planar::Lrvf>;
   if (two_meshes)
@@ -142,7 +142,7 @@ double lag_of(double t, Vec3 const& tip, double ramp) {
   return std::sin(psi) * tip[0] - std::cos(psi) * tip[1];
 }
 
-// The arm under other bodies, joints and integrators.
+// Case for `compare`: the arm in one formulation.
 struct ArmCase {
   Options const& o;
   Stiffness stiffness;
@@ -217,7 +217,7 @@ void energies(Options const& o) {
   std::printf("\nThe arm of medium stiffness, total energy from the end of the ramp (4.5 s) for %g s:\n\n", o.window);
   std::printf("  %-21s %-16s %8s %12s %12s %12s\n", "energy", "integrator", "h [ms]", "E0 [J]", "largest",
               "at the end");
-  Figure figure{.title = "Energy of the arm after its drive has stopped, off its amount then",
+  Figure figure{.title = "Relative change of the energy of the arm after its drive has stopped",
                 .x_label = "t [s]",
                 .y_label = "E/E0 - 1 [1e-6]"};
   drifts<planar::Lrvf>(o, figure, "LRVF");
@@ -251,8 +251,9 @@ int main(int argc, char** argv) {
       "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
   add_formulation_options(line, o,
                           {"angle", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh", "energy"});
-  line.not_negative("--until", &o.end_time,
-                    "end of the run [s]; 0: the end of the ramp, in comparisons 1.5 times that");
+  line.not_negative(
+      "--until", &o.end_time,
+      "end of the run [s]; 0: the end of the ramp, or 1.5 times the ramp with run, compare and equal-mesh");
   line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
   line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
   line.positive("--stiffer", &o.stiffer,

@@ -68,7 +68,7 @@ void print_list(Problem const& problem) {
   std::cout << exist << " combinations exist, " << refused << " do not.\n";
 }
 
-// A body on a policy, with one of its integrators.
+// A body with one policy and one integrator.
 struct Choice {
   BodyOnPolicy of;
   std::size_t integrator;
@@ -234,7 +234,7 @@ std::string FormulationOptions::body_of_figures(std::vector<std::string> const& 
   if (bodies.size() == 1 && is_among(bodies.front(), allowed)) return bodies.front();
   std::string names;
   for (std::string const& name : allowed) names += (names.empty() ? "" : ", ") + name;
-  throw InvalidInput{"The case \"", ErrorObject{which}, "\" has one body, --body ", names,
+  throw InvalidInput{"The case \"", ErrorObject{which}, "\" accepts one body of --body: ", names,
                      ". The cases 'run' and 'compare' accept a list of all bodies."};
 }
 

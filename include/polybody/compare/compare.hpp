@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Comparison of several formulations for one case.
+/// Runs of one case under several formulations: `Formulation`, `Scenario`, `compare` and `join`. The results are in
+/// comparison.hpp.
 
 #include <ctime>
 #include <optional>
@@ -15,10 +16,8 @@
 
 namespace polybody {
 
-// Formulation of a mechanism as one type: body formulation with its mesh, constraint policy and integrator.
-
-/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of the
-/// body.
+/// Body formulation with a mesh that is fixed at compile time, for use as the body of a `Formulation`. `count` is the
+/// number of elements of the body.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
@@ -77,8 +76,9 @@ struct Formulation {
   I integrator = {};          ///< integrator with its options
   FormulationMesh mesh = {};  ///< mesh of the body, if its type has none
 
-  /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, then the number of elements
-  /// if the body is `Meshed` or `Modal` or if `mesh` contains it, and `others`.
+  /// Creates the body by its function `from`, from `shape`, such as a bar, the mesh of the body, and `others`. If
+  /// the body has no number of elements in its type or in `mesh`, it gets its default. With `others`, `mesh.modes` is
+  /// ignored.
   template <class Shape, class... Others>
   BodyType body(Shape const& shape, Others&&... others) const {
     using Mesh = detail::MeshOf<B>;

@@ -12,19 +12,20 @@
 
 namespace polybody {
 
-/// Settings of an `EqualErrorStudy`.
+/// Settings of an `EqualErrorStudy`. `modes` are for modal floating frames, and `tolerances` for integrators with step
+/// size control. Each list that a formulation uses needs at least three entries.
 struct EqualErrorOptions {
-  std::vector<Index> elements = {};                       ///< numbers of elements, ascending; at least three
-  std::vector<Index> modes = {};                          ///< numbers of modes of modal floating frames, ascending
-  std::vector<double> steps = {};                         ///< steps [s], descending; at least three
-  std::vector<double> tolerances = {};                    ///< relative tolerances, descending, for step size control
+  std::vector<Index> elements = {};                       ///< numbers of elements, ascending
+  std::vector<Index> modes = {};                          ///< numbers of modes, ascending
+  std::vector<double> steps = {};                         ///< steps [s], descending
+  std::vector<double> tolerances = {};                    ///< relative tolerances, descending
   std::vector<double> errors = {1e-1, 1e-2, 1e-3, 1e-4};  ///< wanted errors, relative to the span of the output
   std::size_t output = 0;                                 ///< number of the output
   int repeats = 5;                                        ///< number of timed runs of each cheapest setting
   Index samples = 400;                                    ///< number of intervals between the sampled times
 };
 
-/// Physical model of a formulation, and its own settings instead of those of the study.
+/// Physical model of a formulation, with meshes and steps that replace those of the study.
 struct StudyEntry {
   std::string model;               ///< name of the physical model; equal names mean equal equations
   std::vector<Index> meshes = {};  ///< numbers of elements (or modes); empty: those of the study
@@ -83,7 +84,7 @@ double interpolation_error(OutputHistory const& y) {
   return most;
 }
 
-/// Runs all settings of formulation i, and the finest one again from perturbed initial coordinates.
+/// Runs all settings of the formulation `f`, and the finest one again from perturbed initial coordinates.
 template <class = void>
 void record_formulation(StudiedFormulation& f, StudyRunner const& runner, EqualErrorOptions const& o,
                         EqualErrorReport& r) {
@@ -137,22 +138,22 @@ void time_again(EqualErrorReport& r, std::vector<StudyRunner> const& runners, Eq
                      [&](CheapestRun const& a, CheapestRun const& b) { return cpu(a) < cpu(b); });
 }
 
-/// Removes the result of the finest run of a formulation, with a remark, if interpolation between its states changes
-/// the output by more than the smallest wanted error `least` [unit of the output].
+/// Removes the output of the finest run of a formulation and adds a remark, if `interpolation_error` of this run
+/// exceeds the smallest wanted error `least` [unit of the output].
 template <class = void>
 void require_smooth(StudiedFormulation& f, double least, std::string const& output) {
   StudyRun& fine = f.runs.back();
   if (fine.y.empty() || fine.interpolation_error <= least) return;
-  f.remarks.push_back("no reference: the output \"" + output + "\" is not smooth: with every second state its " +
-                      "interpolation changes by " + number(fine.interpolation_error, 3) +
+  f.remarks.push_back("no reference: the output \"" + output + "\" is not smooth: interpolation through every " +
+                      "second state changes it by " + number(fine.interpolation_error, 3) +
                       ", but the smallest wanted error is " + number(least, 3) +
                       ". Shorten the steps, or choose an output without jumps.");
   fine.y.clear();
 }
 
-/// Stores the largest span of the outputs of the finest runs of selected formulations. Without a selected formulation
-/// that has an output which varies, the span stays.
-/// \throws InvalidInput if all selected outputs are constant and no span was found before.
+/// Stores in `r` the largest span of the outputs of the finest runs of selected formulations. If no selected output
+/// varies, the span remains unchanged.
+/// \throws InvalidInput if no selected output varies, one of them is not zero, and the span is zero.
 template <class Select>
 void find_span(EqualErrorReport& r, Select&& selects) {
   double span = 0.0, largest = 0.0;
@@ -220,15 +221,15 @@ inline State first_state(State x, StudyRunKind kind) {
 template <class T>
 void require_axis(std::vector<T> const& values, bool ascending, std::string const& what, std::string const& name) {
   if (values.size() < 3)
-    throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": at least three ", what,
-                                            " are needed to observe an order, but the study has ",
+    throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": the list of ", what,
+                                            " needs at least three entries to observe an order, but has ",
                                             ErrorValue{values.size()}, ". Add to the list."});
   for (std::size_t k = 0; k < values.size(); ++k) {
     bool const ordered = k == 0 || (ascending ? values[k] > values[k - 1] : values[k] < values[k - 1]);
     if (!(values[k] > T(0)) || !ordered)
-      throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": the ", what, " must be positive and ",
-                                              ascending ? "ascending" : "descending", ", but entry ", k, " is ",
-                                              ErrorValue{values[k]}, "."});
+      throw InvalidInput("equal_error.axis", {ErrorObject{name}, ": the list of ", what, " must be positive and ",
+                                              ascending ? "ascending" : "descending", ", but entry ", k,
+                                              ", counted from 0, is ", ErrorValue{values[k]}, "."});
   }
 }
 
@@ -242,10 +243,11 @@ void require_axis(std::vector<T> const& values, bool ascending, std::string cons
 ///     std::cout << study.run();
 ///
 /// The case creates its flexible body by `formulation.body(bar)`, with the mesh that the study has set in
-/// `formulation.mesh`. Every state of a run is sampled, so the output must be smooth between the states.
+/// `formulation.mesh`. The output is recorded at every state of a run and interpolated between them, so it must be
+/// smooth there.
 class EqualErrorStudy {
  public:
-  /// \throws InvalidInput if a wanted error or the number of samples is not positive.
+  /// \throws InvalidInput if a wanted error, the number of samples or the number of repeats is not positive.
   explicit EqualErrorStudy(EqualErrorOptions options) : options_(std::move(options)) {
     for (double const e : options_.errors) require_positive(e, "EqualErrorStudy: a wanted error");
     require_positive(double(options_.samples), "EqualErrorStudy: the number of samples");
@@ -296,14 +298,15 @@ class EqualErrorStudy {
   }
 
   /// Runs all formulations with all meshes and steps and evaluates the results. A failed run, or a formulation without
-  /// a converged result, does not end the study; the remarks of the formulation contain the reason.
+  /// a converged result, does not end the study. `failure` of the run, or the remarks of the formulation, give the
+  /// reason.
   /// \throws InvalidInput if no formulation was added, or if the output of every complete run is constant.
   template <class = void>  // compiled where it is used
   EqualErrorReport run() const {
     EqualErrorReport r = report_;
     if (r.formulations.empty())
-      throw InvalidInput("equal_error.empty",
-                         {ErrorObject{"EqualErrorStudy"}, ": there are no formulations. Call `add` for each of them."});
+      throw InvalidInput("equal_error.empty", {ErrorObject{"EqualErrorStudy"},
+                                               ": there are no formulations. Call `add` for each formulation."});
     for (std::size_t i = 0; i < r.formulations.size(); ++i)
       detail::record_formulation(r.formulations[i], runners_[i], options_, r);
     detail::find_span(r, [](StudiedFormulation const& f) { return !f.finest().y.empty(); });

@@ -15,7 +15,7 @@
 namespace polybody::detail {
 
 /// Order p for which the differences d₁ = C (s₁^p − s₂^p) and d₂ = C (s₂^p − s₃^p) of three results have the observed
-/// ratio d₁/d₂, for sizes s₁ > s₂ > s₃ of mesh width or step. NaN if d₂ is not smaller than 0.9 d₁.
+/// ratio d₁/d₂, for sizes s₁ > s₂ > s₃ of mesh width or step. NaN unless 0 < d₂ < 0.9 d₁.
 inline double observed_order(double d1, double d2, double s1, double s2, double s3) {
   if (!(d2 < 0.9 * d1) || !(d2 > 0.0)) return std::numeric_limits<double>::quiet_NaN();
   double least = 0.05, most = 20.0;
@@ -31,13 +31,14 @@ struct Extrapolation {
   std::vector<double> correction;                           ///< limit minus last result
   double error = 0.0;                                       ///< error bound of the limit
   double order = std::numeric_limits<double>::quiet_NaN();  ///< observed order
-  bool converges = false;                                   ///< true if the differences decrease
+  bool converges = false;                                   ///< true if the differences decrease or are negligible
 };
 
-/// Extrapolates the results `y`, with the descending sizes `s`. Limits without the last result converge at least with
-/// the observed order p, so the error bound is their last change, divided by r^p − 1 (at most by 3) with the ratio r of
-/// the last sizes. With three results, or without an earlier order, it is the correction itself. Differences below
-/// `negligible` are zero.
+/// Extrapolates the results `y`, with the descending sizes `s`. Let D be the difference between the limit of all
+/// results and the limit without the last result. The error bound is D/(r^p − 1) with the observed order p and the
+/// ratio r of the last two sizes; the divisor is at most 3. With three results, or if one of the two limits has no
+/// order, the error bound is the largest correction. Differences up to `negligible` count as zero, and the bound is at
+/// least this number.
 template <class = void>
 Extrapolation extrapolate(std::vector<std::vector<double> const*> const& y, std::vector<double> const& s,
                           double negligible) {
@@ -83,16 +84,16 @@ std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string cons
       sizes.push_back(size);
     }
   if (y.size() < 3) {
-    f.remarks.push_back("no reference: fewer than three " + axis + " are complete.");
+    f.remarks.push_back("no reference: fewer than three " + axis + " have a complete run.");
     return std::nullopt;
   }
   Extrapolation out = extrapolate(y, sizes, negligible);
   if (out.converges) return out;
   std::size_t const n = y.size();
   f.remarks.push_back("no reference: the output does not converge with the " + axis + ". It changes by " +
-                      number(largest_difference(*y[n - 1], *y[n - 2]), 3) + " between the last two and by " +
-                      number(largest_difference(*y[n - 2], *y[n - 3]), 3) + " between the two before. Add finer " +
-                      axis + ".");
+                      number(largest_difference(*y[n - 1], *y[n - 2]), 3) + " between the two finest and by " +
+                      number(largest_difference(*y[n - 2], *y[n - 3]), 3) + " between the next two. Add finer " + axis +
+                      ".");
   return std::nullopt;
 }
 
@@ -147,7 +148,7 @@ void find_references(EqualErrorReport& r) {
       double const apart = largest_difference(f.limit, r.reference(k));
       if (apart > f.limit_error + reference.error + f.spread)
         f.remarks.push_back("its limit differs from that of \"" + r.formulations[reference.formulation].name +
-                            "\" by " + number(apart, 3) + ", more than the error bounds " +
+                            "\" by " + number(apart, 3) + ", more than the sum of the error bounds, " +
                             number(f.limit_error + reference.error, 3) +
                             ", although both have the same physical model. Use finer meshes and shorter steps.");
     }

@@ -19,21 +19,23 @@ namespace polybody {
 
 /// One run of a formulation with one mesh and one step.
 struct StudyRun {
-  Index mesh = 0;                    ///< number of elements, or of modes; 0 for a body without mesh
-  double step = 0.0;                 ///< step [s], or relative tolerance of an integrator with step size control
-  double cpu = 0.0;                  ///< CPU time of the steps [s], median of the repeated runs
-  double least_cpu = 0.0;            ///< least CPU time of the repeated runs [s]
-  double most_cpu = 0.0;             ///< largest CPU time of the repeated runs [s]
-  int timings = 0;                   ///< number of timed runs
-  Index unknowns = 0;                ///< velocities and multipliers of the integrator
-  long steps = 0;                    ///< number of steps
-  long iterations = 0;               ///< number of Newton iterations
-  long factorisations = 0;           ///< number of factorisations
-  std::vector<double> y = {};        ///< output at `times` of the report [unit of the output]; empty for a failed run
-  std::vector<double> energy = {};   ///< total energy at `times` [J]; only for the finest mesh and the shortest step
-  double interpolation_error = 0.0;  ///< change of y if it is interpolated through every second state; of the same run
+  Index mesh = 0;                   ///< number of elements, or of modes; 0 for a body without mesh
+  double step = 0.0;                ///< step [s], or relative tolerance of an integrator with step size control
+  double cpu = 0.0;                 ///< CPU time of the steps [s]; median of the timed runs if there are any
+  double least_cpu = 0.0;           ///< least CPU time of the timed runs [s]
+  double most_cpu = 0.0;            ///< largest CPU time of the timed runs [s]
+  int timings = 0;                  ///< number of timed runs
+  Index unknowns = 0;               ///< velocities and multipliers of the integrator
+  long steps = 0;                   ///< number of steps
+  long iterations = 0;              ///< number of Newton iterations
+  long factorisations = 0;          ///< number of factorisations
+  std::vector<double> y = {};       ///< output at `times` of the report [unit of the output]; empty for a failed run
+  std::vector<double> energy = {};  ///< total energy at `times` [J]; only for the finest mesh and the shortest step
+  /// Change of y by interpolation through every second state [unit of the output]; 0 except for the finest mesh and
+  /// the shortest step.
+  double interpolation_error = 0.0;
   double error = std::numeric_limits<double>::quiet_NaN();  ///< discretisation error [unit of the output]
-  bool on_front = false;     ///< true if no run of the study has both a smaller error and a smaller CPU time
+  bool on_front = false;     ///< true for a run on the Pareto front of error and CPU time of the study
   std::string failure = {};  ///< message of a failed run
 };
 
@@ -71,7 +73,7 @@ struct ModelReference {
 struct ModelDifference {
   std::size_t a{}, b{};     ///< indices of the references
   double difference = 0.0;  ///< largest difference [unit of the output]
-  double error = 0.0;       ///< sum of the error bounds, at least the spread of both [unit of the output]
+  double error = 0.0;       ///< sum of the error bounds and spreads of both references [unit of the output]
   /// True if the difference exceeds its error bound.
   bool resolved() const { return difference > error; }
 };
@@ -96,9 +98,10 @@ struct Ranking {
 
 /// Result of `EqualErrorStudy::run`.
 struct EqualErrorReport {
-  std::string output;                            ///< name of the output with unit
-  std::vector<double> times;                     ///< (n) times of the samples [s]
-  double span = 0.0;                             ///< largest minus smallest value of the output [unit of the output]
+  std::string output;         ///< name of the output with unit
+  std::vector<double> times;  ///< (n) times of the samples [s]
+  /// Span: largest minus smallest value of the output of a formulation, maximum over formulations [unit of the output].
+  double span = 0.0;
   std::vector<StudiedFormulation> formulations;  ///< in the order of `add`
   std::vector<ModelReference> references;        ///< one for each physical model with a converged formulation
   std::vector<ModelDifference> differences;      ///< one for each pair of references
@@ -122,7 +125,7 @@ inline double largest_difference(std::vector<double> const& a, std::vector<doubl
 
 namespace detail {
 
-/// Mesh and step of a run as text, such as "20 elements, 0.0025".
+/// Mesh and step of a run as text, such as "20 elements, h = 0.0025 s".
 template <class = void>
 std::string setting_of(StudiedFormulation const& f, StudyRun const& run) {
   std::string const mesh = f.mesh_name.empty() ? "" : std::to_string(run.mesh) + ' ' + f.mesh_name + ", ";
@@ -183,7 +186,7 @@ void print_rankings(std::ostream& out, EqualErrorReport const& r) {
 
 template <class = void>
 void print_meshes(std::ostream& out, EqualErrorReport const& r) {
-  out << "\nDiscretisation error with the shortest step, compared with the reference of the own physical model "
+  out << "\nDiscretisation error with the shortest step, compared with the reference of the same physical model "
       << r.unit() << ":\n";
   std::vector<std::vector<std::string>> rows{{"formulation", "mesh", "error", "order"}};
   for (StudiedFormulation const& f : r.formulations) {

@@ -106,7 +106,8 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   }
 
  private:
-  /// State of the tree in which the equations of all bodies were written.
+  /// Stored state of the tree, at which a matrix was written. Maps the right-hand side of a step to the equations of
+  /// all bodies, and their solution back.
   class FrozenTree final : public FrozenMaps {
    public:
     explicit FrozenTree(ReducedCoordinates& of) : of_(of), state_(of.state_) {}

@@ -61,8 +61,8 @@ class TreeRows {
 
   /// Stores the state of the last `expand` for `write`.
   void hold() { frozen_->freeze(); }
-  /// Adds row i to `sink`; its entries for the velocities `velocities(i)` are `row`. `row0` and `col0` are the row and
-  /// column of the first equation and of the first unknown in the sink.
+  /// Adds row i to `sink`; its entries for the velocities `velocities(i)` are `row`. In the sink, `row0` is
+  /// the row of the first equation, and `col0` is the column of the first unknown.
   template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];

@@ -38,7 +38,7 @@ void check(Comparison const& c, std::string const& what) {
       throw InvalidInput("comparison.runs",
                          {ErrorObject{what}, ": the run \"", run.name,
                           "\" has no times, a history whose length differs from the number of times, "
-                          "or other outputs than the first run. Use the runs that `compare` returns."});
+                          "or outputs that differ from those of the first run. Use the runs that `compare` returns."});
   }
 }
 
@@ -79,8 +79,8 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
 }  // namespace detail
 
 /// Writes the table that operator<< prints for a comparison, in full precision, with one row per quantity and one
-/// column per run. Throws InvalidInput for a comparison without runs and for numbers that are not finite; IoError if
-/// the file cannot be written.
+/// column per run. Throws InvalidInput for a comparison without complete runs and for numbers that are not finite;
+/// IoError if the file cannot be written.
 template <class = void>
 void write_csv(Comparison const& all, std::filesystem::path const& file) {
   Comparison const c = detail::complete_runs(all);

@@ -59,15 +59,16 @@ class EqualErrorCharts {
   /// CPU time over the discretisation error of all runs. The runs of the Pareto front of a formulation have strong
   /// markers and are joined by a line. The runs of the front of all formulations have rings.
   Chart work() const {
-    Chart chart{.id = "work",
-                .title = "CPU time over discretisation error",
-                .note =
-                    "Each marker is a run. A line joins the runs of a formulation that no other run of it surpasses "
-                    "in both error and time. Rings mark the best runs of all formulations.",
-                .x_label = "discretisation error / span [1]",
-                .y_label = "CPU time [s]",
-                .log_x = true,
-                .log_y = true};
+    Chart chart{
+        .id = "work",
+        .title = "CPU time over discretisation error",
+        .note =
+            "Each marker is a run. A line joins the best runs of a formulation: none of its other runs has both a "
+            "smaller error and a smaller CPU time. Rings mark the best runs of all formulations.",
+        .x_label = "discretisation error / span [1]",
+        .y_label = "CPU time [s]",
+        .log_x = true,
+        .log_y = true};
     for (std::size_t i = 0; i < r_.formulations.size(); ++i) {
       StudiedFormulation const& f = r_.formulations[i];
       ChartCurve curve{.label = f.name, .note = f.integrator, .key = i, .style = styles_[i]};
@@ -132,7 +133,7 @@ class EqualErrorCharts {
   Chart output() const {
     Chart chart{.id = "output",
                 .title = "References of the output",
-                .note = "Extrapolated results of the physical models. A band has the width of the error bound.",
+                .note = "Extrapolated results of the physical models. The half width of a band is the error bound.",
                 .x_label = "time [s]",
                 .y_label = r_.output};
     for (std::size_t k = 0; k < r_.references.size(); ++k) {
@@ -154,14 +155,14 @@ class EqualErrorCharts {
     for (ModelDifference const& d : r_.differences) {
       std::string const id = together ? "differences" : "differences-" + std::to_string(d.a + 1);
       if (charts.empty() || charts.back().id != id)
-        charts.push_back({.id = id,
-                          .title = together ? "Differences of the references"
-                                            : "Differences from “" + r_.references[d.a].model + "”",
-                          .note =
-                              "A band has the width of the error bound. The two colours of a curve are those of the "
-                              "formulations that provide the references.",
-                          .x_label = "time [s]",
-                          .y_label = "difference " + r_.unit()});
+        charts.push_back(
+            {.id = id,
+             .title =
+                 together ? "Differences of the references" : "Differences from “" + r_.references[d.a].model + "”",
+             .note = "The half width of a band is the error bound. The two colours of a curve are those of the "
+                     "formulations that provide the references.",
+             .x_label = "time [s]",
+             .y_label = "difference " + r_.unit()});
       charts.back().curves.push_back(difference(d));
     }
     return charts;
@@ -239,9 +240,9 @@ class EqualErrorCharts {
         add(reference.error, "error bound of the reference of “" + reference.model + "”", reference.formulation);
     for (ChartCurve const& c : chart.curves)
       add(r_.formulations[c.key].spread, r_.formulations[c.key].name + ", change by round-off", c.key);
-    chart.note += std::string(vertical ? " A broken line is a wanted error." : "") +
-                  " A dotted line is the error bound of a reference, or a change by round-off. Errors below it are "
-                  "uncertain.";
+    chart.note +=
+        std::string(vertical ? " A broken line is a wanted error." : "") +
+        " A dotted line is the error bound of a reference, or a change by round-off. Smaller errors are uncertain.";
   }
 
   /// Curve of a history with a few markers, at places that differ between formulations.

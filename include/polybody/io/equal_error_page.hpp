@@ -68,8 +68,9 @@ std::string report_text(EqualErrorReport const& r, PageOptions const& options) {
 
 }  // namespace detail
 
-/// Writes a report as one HTML file without external parts: rankings, work-precision curves, convergence, differences
-/// of the physical models, histories, and a film if `options.film` names one. The file appears when it is complete.
+/// Writes a report as one HTML file that needs no network: rankings, work-precision curves, convergence, differences of
+/// the physical models, and histories. The page shows the film `options.film`, which remains a separate file. The page
+/// appears when it is complete.
 /// \throws InvalidInput for a report that `EqualErrorStudy::run` cannot have returned.
 /// \throws IoError if the film does not exist, or if the file cannot be written.
 template <class = void>
@@ -122,7 +123,7 @@ void write_histories(EqualErrorReport const& r, std::filesystem::path const& fil
 ///   report.html    page of `write_page`
 ///   runs.csv       all complete runs
 ///   histories.csv  times, and references of the physical models
-///   report.md      text of operator<<
+///   report.md      text of operator<<, command, compiler, machine and date
 /// Returns the files.
 /// \throws InvalidInput for a report that `EqualErrorStudy::run` cannot have returned.
 /// \throws IoError if the film does not exist, or if a file cannot be written.

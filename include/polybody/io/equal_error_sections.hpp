@@ -24,8 +24,8 @@ struct PageOptions {
 namespace detail {
 
 /// Checks that a report can be drawn.
-/// \throws InvalidInput if there are no formulations, if histories differ in length from the times, or if an index is
-/// out of range.
+/// \throws InvalidInput if there are no formulations, if a formulation has no runs, if a history has another length
+/// than the times, if a reference has no limit, or if an index is out of range.
 template <class = void>  // compiled where it is used
 void check(EqualErrorReport const& r) {
   auto const need = [](bool good, std::string_view object, std::string_view fault) {
@@ -42,7 +42,7 @@ void check(EqualErrorReport const& r) {
   std::string_view const range = "an index is out of range. Use the result of `EqualErrorStudy::run`.";
   for (ModelReference const& reference : r.references)
     need(reference.formulation < r.formulations.size() && !r.formulations[reference.formulation].limit.empty(),
-         reference.model, "the reference belongs to no formulation with a limit.");
+         reference.model, "the reference needs a formulation with a limit. Use the result of `EqualErrorStudy::run`.");
   for (ModelDifference const& d : r.differences)
     need(d.a < r.references.size() && d.b < r.references.size(), r.output, range);
   for (Ranking const& ranking : r.rankings) {
@@ -158,7 +158,8 @@ class EqualErrorPage {
 
   std::string rankings() const {
     std::string out =
-        "<p>Each table contains the cheapest run of each formulation with at most this error. The error is "
+        "<p>Each table contains the cheapest run of each formulation with at most the error in its heading. The error "
+        "is "
         "the largest difference from the reference of the formulation’s own physical model. The ratio "
         "compares the CPU time with that of the first formulation.</p>\n";
     for (Ranking const& ranking : r_.rankings) {

@@ -25,8 +25,8 @@ struct FormulationStyle {
   bool open() const { return marker >= 4 && marker % 2 == 0; }
 };
 
-/// Styles of all families. A colour has the marker that plot.hpp gives to it. The second family with a colour has an
-/// open marker and a broken line.
+/// Styles of all families. A colour has the marker that plot.hpp gives to it. If two families share a colour, the
+/// second one has an open marker and a dashed line.
 inline constexpr std::array<FormulationStyle, 10> formulation_styles{{
     {families::lrvf, 0, detail::point_types[0], ""},
     {families::lrvf_in_space, 0, detail::point_types[0] - 1, "9 3"},

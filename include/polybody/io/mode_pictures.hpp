@@ -42,8 +42,8 @@ class ModeShape {
   ModeShape(Visual& visual, State const& x, MatX::ConstColXpr const& shape, double size) {
     if (shape.size() != x.v.size())
       throw InvalidInput("mode.size", {ErrorObject{"mode pictures"}, ": a mode has ", ErrorValue{shape.size()},
-                                       " velocities, but the state has ", x.v.size(),
-                                       ". Give the state for which the modes were computed."});
+                                       " entries, but the state has ", x.v.size(),
+                                       " velocities. Give the state for which the modes were computed."});
     State y = x;
     y.v = shape;
     parts_ = visual.at(y);

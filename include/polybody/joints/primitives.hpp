@@ -57,8 +57,8 @@ struct ConstantOrientation {
 
 /// Massless rod with a spherical joint at each end, in the plane and in space. 1 constraint equation
 ///   g = |r_b − r_a| − L      [Haug 1989, §9.4, there squared].
-/// Without the square, g is a length, λ is the tension of the rod [N], and a Penalty is a linear spring for any
-/// elongation. The direction of the rod is undefined if the points coincide.
+/// Since the distance is not squared, g is a length, λ is the tension of the rod [N], and a Penalty is a linear spring
+/// for any elongation. The direction of the rod is undefined if the points coincide.
 struct Distance {
   static constexpr char const* name = "Distance";
   static constexpr World world = World::both;

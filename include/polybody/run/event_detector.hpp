@@ -158,7 +158,7 @@ struct EventPlace {
     side = side > 0 ? 2 : -2;
     if (event.rests) return;
     std::string const why = repeated ? sentence_of({"within its tolerance of ", event.tolerance, " s after its action"})
-                                     : sentence_of({actions, " times within the length of one step"});
+                                     : sentence_of({"with ", actions, " actions within the length of one step"});
     throw InvalidInput("event.accumulates",
                        {"The event \"", ErrorObject{event.name}, "\" occurs again ", why, " at t = ", ErrorTime{t},
                         " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "

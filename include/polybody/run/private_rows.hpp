@@ -2,7 +2,7 @@
 /// \file
 /// Local tests for redundant rows of the constraint Jacobian G. A set of rows is independent of all others if no other
 /// row has entries in the velocities of a certain body, and if the entries of the set in these velocities are linearly
-/// independent. Rows between the same bodies can depend on each other.
+/// independent. Such rows are called private. Rows between the same bodies can depend on each other.
 
 #include <algorithm>
 

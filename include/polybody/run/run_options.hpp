@@ -133,8 +133,8 @@ struct RunReport : RunCounts {
   bool warns(char const* words) const {
     return std::any_of(warnings.begin(), warnings.end(), [&](std::string const& w) { return w.starts_with(words); });
   }
-  /// Text for the message of an exception that ends the run: number of halved steps, and the warnings. Empty without
-  /// halved steps and warnings.
+  /// Text for the message of an exception that ends the run: number of halved steps, and the warnings. Empty if there
+  /// are neither halved steps nor warnings.
   [[gnu::cold]] std::string warned() const {
     std::string all;
     if (halved > 0) all = sentence_of({halved, halved == 1 ? " step" : " steps", " of the run had to be halved."});

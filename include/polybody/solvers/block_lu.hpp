@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Solvers of the block factorisation by symmetry: `BlockLu`, `BlockSolver` and `BlockLdlt`.
 
 #include <polybody/solvers/block_factor.hpp>
 
@@ -10,8 +12,8 @@ using BlockLu = BlockFactor<Symmetry::none>;
 using BlockSolver = BlockFactor<Symmetry::measured>;
 
 /// Block LDLᵀ factorisation of a symmetric matrix; the half below the diagonal is not read. The tangent is unsymmetric
-/// with friction, or with damping of rotating flexible bodies. With `BlockLdlt`, Newton's method then contracts with a
-/// rate of 0.6 or worse. `BlockSolver` reads both halves and measures the asymmetry.
+/// with friction, or with damping of rotating flexible bodies. `BlockLdlt` then factorises a wrong matrix, and
+/// Newton's method converges slowly. `BlockSolver` reads both halves and measures the asymmetry.
 using BlockLdlt = BlockFactor<Symmetry::assumed>;
 
 }  // namespace polybody

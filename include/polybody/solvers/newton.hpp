@@ -326,12 +326,11 @@ struct NewtonSolve {
 ///
 /// Stop: with ‖Δ‖ relative to its tolerance, the solve stops if θ/(1 − θ) ‖Δ‖ ≤ 1 or ‖Δ‖ ≤ 0.1. With a new
 /// factorisation the first condition also requires that no correction of the solve grew. After a large correction θ is
-/// small for any iterate and does not prove convergence. Corrections of one factorisation are combined
-/// (`AndersonAcceleration`), except in full Newton and without `predictive_stop`. θ is then the contraction rate of the
-/// factorisation alone. The first condition then contains the residual of the fit in place of ‖Δ‖. At the second
-/// correction, θ is only a ratio of two corrections; the condition then contains the geometric mean of ‖Δ‖ and the
-/// residual of the fit. The solve fails after `max_growths` growing
-/// corrections of new factorisations.
+/// small for any iterate and does not prove convergence. Corrections with the same factorisation are combined
+/// (`AndersonAcceleration`), unless `always_refactor` is true or `predictive_stop` is false. θ is then the contraction
+/// rate of the factorisation alone. The first condition then contains the residual of the fit in place of ‖Δ‖. At the
+/// second correction, θ is only a ratio of two corrections; the condition then contains the geometric mean of ‖Δ‖ and
+/// the residual of the fit. The solve fails after `max_growths` growing corrections of new factorisations.
 ///
 /// Full Newton: in stiff directions the rate θ alternates (0.01, 0.8, 1e-4, …: bending, then the stretch due to
 /// bending), so that one rate does not predict the next correction. Full Newton stops if ‖Δ‖ ≤ 1. A correction grows if

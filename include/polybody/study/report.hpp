@@ -89,8 +89,8 @@ std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std:
     std::size_t const j =
         std::size_t(std::ranges::find(found.points.columns(), name, &Column::name) - found.points.columns().begin());
     if (j == found.points.columns().size())
-      throw InvalidInput("study.no_column", {"study: the curves need the name of a parameter, but \"",
-                                             ErrorObject{name}, "\" is not a parameter."});
+      throw InvalidInput("study.no_column", {"study: \"", ErrorObject{name},
+                                             "\" is not a parameter. Label curves by names of parameters only."});
     Column const& column = found.points.columns()[j];
     std::string const unit = column.unit.empty() ? "" : ' ' + column.unit;
     for (std::size_t i = 0, k = 0; i < found.outcomes.size(); ++i)

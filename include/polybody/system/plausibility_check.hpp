@@ -81,7 +81,7 @@ class PlausibilityCheck {
     double most = 0.0;      ///< largest unexplained gain, less its error, at a balance since the start [J]
     Energy start;           ///< E₀
     double began = 0.0;     ///< time of the start [s]
-    Unexplained settled;    ///< sum of the earlier balances of the run
+    Unexplained settled;    ///< balances that ended before `began`: sums of energy and doubt, maxima of the rest
   };
 
  public:

@@ -77,7 +77,7 @@ struct TrackLink {
 /// track's direction from the first pin that is seated on the sprocket.
 struct TrackPath {
   TrackLayout layout;                 ///< layout with the tensioner's circle at the position that closes the loop
-  double travel;                      ///< travel of the tensioner's circle from the listed position [m]
+  double travel;                      ///< travel of the tensioner's circle from its given position [m]
   std::vector<Vec2> pins = {};        ///< links × (2) positions of the pins [m]
   std::vector<TrackLink> links = {};  ///< frames of the links
   int seated = 0;                     ///< number of pins on the sprocket, pins 0 … seated − 1

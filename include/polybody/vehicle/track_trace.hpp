@@ -172,7 +172,7 @@ struct TrackTrace {
   int start;               ///< seat at which the chain begins
   int last;                ///< last seat covered by the track, ≥ start
   int first = 0;           ///< first seat covered by the track, ≤ start
-  std::vector<Vec2> pins;  ///< pins from seat `start` to the pin from which a straight run leads to seat `first`
+  std::vector<Vec2> pins;  ///< pins from seat `start` to the beginning of the straight run that ends at seat `first`
   double length = 0.0;     ///< length of the whole loop in links; a whole number only if the loop closes
 };
 

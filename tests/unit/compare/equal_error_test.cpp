@@ -198,11 +198,11 @@ TEST(EqualError, RefusesSettingsFromWhichNoOrderFollows) {
     return refusal([&] { EqualErrorStudy(options).add(Bending{}, Engineering{"cable"}, {.model = "cable"}); });
   };
   EXPECT_TRUE(has(add({.elements = {4, 8}, .steps = {0.2, 0.1, 0.05}}),
-                  "cable: at least three elements are needed to observe an order, but the study has 2"));
-  EXPECT_TRUE(
-      has(add({.elements = {4, 8, 8}, .steps = {0.2, 0.1, 0.05}}), "must be positive and ascending, but entry 2 is 8"));
+                  "cable: the list of elements needs at least three entries to observe an order, but has 2"));
+  EXPECT_TRUE(has(add({.elements = {4, 8, 8}, .steps = {0.2, 0.1, 0.05}}),
+                  "must be positive and ascending, but entry 2, counted from 0, is 8"));
   EXPECT_TRUE(has(add({.elements = {4, 8, 16}, .steps = {0.1, 0.2, 0.05}}),
-                  "must be positive and descending, but entry 1 is 0.2"));
+                  "must be positive and descending, but entry 1, counted from 0, is 0.2"));
   EXPECT_TRUE(has(refusal([] { EqualErrorStudy({}).run(); }), "there are no formulations"));
   EXPECT_TRUE(has(refusal([] { EqualErrorStudy({.errors = {0.0}}); }), "a wanted error must be positive"));
 }

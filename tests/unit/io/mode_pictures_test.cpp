@@ -118,7 +118,7 @@ TEST(ModePictures, RefuseWhatCannotBeDrawn) {
   Boxes b;
   fs::path const stem = b.folder / "none";
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX::Zero(6, 1), stem); }),
-                  "a mode has 6 velocities, but the state has 12"));
+                  "a mode has 6 entries, but the state has 12 velocities"));
   EXPECT_TRUE(
       has(refusal([&] { write_modes(b.visual, b.x, MatX(12, 0), stem); }), "the matrix of shapes has no columns"));
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.size = 0.0}); }), "size"));

@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// Axes of a section, with products of vectors and the rotation matrix R.
+/// Axes of a section as the columns of the rotation matrix R, with the products R x and Rᵀ x, and products of vectors.
 template <KernelScalar T>
 struct SectionAxes {
   using V3 = Vec<T, 3>;  ///< three components

@@ -114,8 +114,8 @@ concept HasOwnEquations = requires(B const b, std::span<double const> x, Vec<dou
 };
 
 /// Body whose deflection does not include the effect of axial forces (geometric stiffening). `axial_share` returns the
-/// ratio of the axial forces in its beams to their buckling forces, negative in compression; at −1 the beams buckle. A
-/// run warns if the ratio is large.
+/// factor between its axial forces and those at which its beams buckle, negative in compression: at −1 the beams
+/// buckle. A run warns if the magnitude is at least 0.05.
 template <class B>
 concept WithoutGeometricStiffening =
     requires(B const b, std::span<double const> x, Vec3 g, std::span<PlacedWrench const> loads) {
