@@ -7,7 +7,7 @@
 
 namespace polybody {
 
-/// Cost of attempts at a step that failed.
+/// Cost of failed attempts at a step.
 struct AttemptCost {
   int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
 };
@@ -24,7 +24,7 @@ struct StepReport {
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
   long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< last correction over its tolerance if the iteration budget ended the step, else 0
+  double left = 0.0;         ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {
@@ -61,7 +61,7 @@ auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
   }
 }
 /// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
-/// or too large.
+/// or above `largest_number`.
 template <class = void>
 void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;

@@ -326,8 +326,8 @@ struct Radau {
       }
       return all_finite(w.rhs);
     }
-    /// Writes the matrix with each block row evaluated at its own stage. Near a singular configuration, G differs as
-    /// much between two stages as from a matrix of lower rank.
+    /// Writes the matrix with each block row evaluated at its own stage. Near a singular configuration, the change of G
+    /// between two stages is as large as its distance from a matrix of lower rank.
     void write_by_stage(BlockSink& sink) {
       for (int i = 0; i < 3; ++i) {
         auto const k = std::size_t(i);

@@ -38,10 +38,11 @@ System system_for(M const&& model) = delete;
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const& model) {
   static_assert(ConstraintCompatible<I, M>,
-                "This explicit integrator has no stabilisation, but joints with the Constraint policy add constraint "
-                "equations. Use it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
+                "This explicit integrator has no stabilisation, but the Constraint policy and Euler parameters add "
+                "constraint equations. Use an integrator with Projection, such as RungeKutta4<Projection>, or an "
+                "implicit integrator.");
   static_assert(ConstantMassCompatible<I, M>,
-                "This integrator needs bodies with a constant mass matrix. Use RungeKutta4.");
+                "This integrator needs bodies with a constant mass matrix and no joint coordinates. Use RungeKutta4.");
   static_assert(ArticulatedBodySolvable<M>,
                 "joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states. Use "
                 "joint_coordinates::Augmented.");
