@@ -51,14 +51,13 @@ System system_for(M const& model) {
                 "of a step together. Use joint_coordinates::Augmented.");
   if constexpr (contains(entries_of<I>(), Capabilities::secants)) {
     using CompatibilityReport = SecantSupport<M>;
+    static_assert(FullStateModel<M>,
+                  "EnergyMomentum and EnergyDecaying do not support policies that eliminate coordinates, such as "
+                  "AncfLinear and JointCoordinates. Use Constraint.");
     static_assert(
-        FullStateModel<M>,
-        "EnergyMomentum and EnergyDecaying do not support policies that eliminate coordinates, such as AncfLinear and "
-        "JointCoordinates. Use Constraint.");
-    static_assert(CompatibilityReport::bodies,
-                  "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a "
-                  "step: cables, ANCF "
-                  "beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
+        CompatibilityReport::bodies,
+        "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step: "
+        "cables, ANCF beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
     static_assert(CompatibilityReport::policies || !FullStateModel<M>,
                   "EnergyMomentum and EnergyDecaying support the policies Constraint, Penalty and Bushing. Use "
                   "GeneralisedAlpha for others.");
@@ -69,8 +68,7 @@ System system_for(M const& model) {
                   "EnergyMomentum and EnergyDecaying do not support force groups. Use GeneralisedAlpha.");
     static_assert(CompatibilityReport::potentials,
                   "EnergyMomentum and EnergyDecaying need the potential of a force for general scalars: declare "
-                  "potential(frames, t) as "
-                  "a template on the scalar type of the frames.");
+                  "potential(frames, t) as a template on the scalar type of the frames.");
   }
   if constexpr (CompatibleIntegrator<I, M>) return stepped_system(model, with < entries_of<I>() | more >);
 }
