@@ -260,7 +260,7 @@ class ForwardDynamics {
   }
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
   std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
-  /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
+  /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped more equations or found
   /// a small pivot, or `note_doubt` was called.
   bool is_doubtful() const { return doubtful_ || solver_->is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`

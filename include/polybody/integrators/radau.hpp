@@ -58,8 +58,8 @@ namespace polybody {
 struct RadauDerivatives;  // gradients/radau_derivatives.hpp
 
 /// Reference integrator for few, accurate steps, also of stiff models. The matrix of a step has three times the
-/// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. Above 64 unknowns,
-/// `AutoLu` allocates memory in a step.
+/// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. If the matrix has more
+/// than 64 unknowns, `AutoLu` allocates memory in a step.
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
