@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Linear solver of statics, `AutoLu`: dense for small systems, sparse for large ones.
+
 #include <span>
 
 #include <polybody/math/sequence.hpp>

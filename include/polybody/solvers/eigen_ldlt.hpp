@@ -127,8 +127,9 @@ class EigenLdlt {
     double const off = (a - t).norm(), size = a.norm();
     if (off > largest_asymmetry * size)
       throw InvalidInput("solver.not_symmetric",
-                         {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric (relative asymmetry ",
-                          ErrorValue{off / size}, "). Use EigenSparseLu or the default BlockSolver."});
+                         {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric: the relative asymmetry is ",
+                          ErrorValue{off / size}, ", but the limit is ", largest_asymmetry,
+                          ". Use EigenSparseLu or the default BlockSolver."});
   }
   /// First unknown with a pivot not above `threshold` times the largest entry of its column; −1 if there is none.
   Index first_bad(double threshold) const {

@@ -114,7 +114,8 @@ struct NewtonProgress {
     return saved * std::max(reused.served, 1) > options.factorisation_cost;
   }
 
-  /// True if the corrections shrink too slowly or grow. They may then consist of round-off.
+  /// True if the corrections may consist of round-off: `shrinks` is false, or a correction of at most 1e4 times its
+  /// tolerance grows or is the second one in succession above half of its predecessor.
   bool stagnates(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
@@ -179,8 +180,8 @@ struct NewtonSolve {
     }
     return restarted;
   }
-  /// True if a correction of this norm is small compared with the motion during the step, or with the largest
-  /// correction.
+  /// True if `is_far_from_solution` of the problem is false for 100 times this norm. If the problem has no such
+  /// function: true if the norm is at most a hundredth of the largest one.
   bool is_near(double norm) const {
     if constexpr (requires { problem.is_far_from_solution(norm); })
       return !problem.is_far_from_solution(100.0 * norm);
