@@ -66,7 +66,7 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
 }  // namespace detail
 
 /// Stress at the point (y, z) [m] of the section under section `forces` (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m].
-/// \throws InvalidInput for a bar without section and material, and for a point outside the section.
+/// \throws InvalidInput for a bar given by constants, and for a point outside the section.
 template <class = void>
 SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   SectionStress out;
@@ -115,10 +115,10 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 /// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
 /// deformation has no effect on the recorded motion.
 ///
-/// Only the accelerations q̈ of the solution are used. K e = Q − M Φ q̈, with the nodal loads Q, yields all nodal
-/// displacements e. The forces in a beam follow from the forces at its ends and the loads along it by equilibrium. The
-/// stress of static loads is then exact in every section, for any number of elements and modes ("mode acceleration"
-/// [Williams 1945]).
+/// Of the solution, only the accelerations q̈ are used; with `Vibration::follows_deformation` also q and q̇. K e = Q −
+/// M Φ q̈, with the nodal loads Q, yields all nodal displacements e. The forces in a beam follow from the forces at its
+/// ends and the loads along it by equilibrium. The stress of static loads is then exact in every section, for any
+/// number of elements and modes ("mode acceleration" [Williams 1945]).
 ///
 /// Example of a filtered history (signals/filter.hpp):
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
@@ -145,10 +145,10 @@ class DecoupledStress {
   /// displacements under the elastic and damping forces.
   MatX const& displacements() const { return e_; }
 
-  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar` (see sections.hpp),
-  /// including damping forces. If a load acts at this section, the values just beyond the load are returned. At the end
-  /// of the bar, the values just before the load are returned. \throws InvalidInput outside the bar, and for a
-  /// structure without bars.
+  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar`, counted from 0
+  /// (see sections.hpp), including damping forces. If a load acts at this section, the values just beyond the load are
+  /// returned. At the end of the bar, the values just before the load are returned. \throws InvalidInput outside the
+  /// bar, and for a structure without bars.
   template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
