@@ -119,7 +119,7 @@ struct AlphaMethod {
   /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
 
-  /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of the last step if `careful`.
+  /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of x if `careful`.
   void guess(State& x, double h, bool careful, AlphaVectors& w) const {
     if (careful) {
       w.vd = x.a;

@@ -208,7 +208,7 @@ class ForwardDynamics {
   }
 
   /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at a configuration with the gain
-  /// `usual` (`ConstraintGain::far_above`).
+  /// `usual` (`ConstraintGain::far_above`), or if the matrix at `there` is singular.
   bool is_singular(System& system, At<double> const& there, ConstraintGain const& usual) {
     try {
       return constraint_gain(system, there.q, there.v, there.t).far_above(usual);
@@ -216,7 +216,8 @@ class ForwardDynamics {
       return true;
     }
   }
-  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at `here`.
+  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at `here`
+  /// (`ConstraintGain::far_above`), or if the matrix at one of them is singular.
   bool loses_rank(System& system, At<double> const& here, At<double> const& there) {
     try {
       return is_singular(system, there, constraint_gain(system, here.q, here.v, here.t));
@@ -261,7 +262,7 @@ class ForwardDynamics {
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
   std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
   /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped more equations or found
-  /// a small pivot, or `note_doubt` was called.
+  /// a relative pivot of at most 1e-3 (`BlockFactor::is_doubtful`), or `note_doubt` was called.
   bool is_doubtful() const { return doubtful_ || solver_->is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection

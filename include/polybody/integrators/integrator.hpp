@@ -23,8 +23,8 @@ struct StepReport {
   int halved = 0;            ///< failed steps that were repeated as two halves (`RunOptions::max_step_halvings`)
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
-  long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
+  long choices = 0;   ///< selections of independent coordinates; set by `RungeKutta4` and `AdamsBashforthMoulton`
+  double left = 0.0;  ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {

@@ -9,13 +9,13 @@
 
 namespace polybody {
 
-/// Partition as in `PartitionedConstraints`, for large systems: constraint equations G b = r (m×n) of rank k, with b_d
-/// = G_d⁻¹ r for b_i = 0. The first partition results from rank-revealing sparse QR factorisations: of G for the
-/// columns, and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the
-/// limit, its column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry.
-/// Exchanges continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The
-/// factorisation of G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M,
-/// Gᵀ; G, 0]. T is `double`; a program that does not use this template does not compile it.
+/// Partition as in `PartitionedConstraints`, for sparse G: constraint equations G b = r (m×n) of rank k, with b_d =
+/// G_d⁻¹ r for b_i = 0. The first partition results from rank-revealing sparse QR factorisations: of G for the columns,
+/// and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the limit, its
+/// column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry. Exchanges
+/// continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The factorisation of
+/// G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M, Gᵀ; G, 0]. T is
+/// `double`; a program that does not use this template does not compile it.
 template <class T = double>
 class SparsePartitionOf {
  public:
