@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Linear solver of statics, `AutoLu`: dense for small systems, sparse for large ones.
+/// Linear solver of statics, `AutoLu`: dense up to 64 unknowns, sparse above.
 
 #include <span>
 

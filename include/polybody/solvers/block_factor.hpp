@@ -28,7 +28,7 @@ namespace polybody {
 enum class Symmetry {
   assumed,   ///< only the upper half is read
   none,      ///< both halves are read
-  measured,  ///< both halves are read; if they agree, only the upper half is computed
+  measured,  ///< both halves are read; if they agree up to 1e-12 of the norm, only the upper half is computed
 };
 
 /// Block factorisation of a saddle-point matrix; `BlockLdlt`, `BlockLu` and `BlockSolver` are its three variants.

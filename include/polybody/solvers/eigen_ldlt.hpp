@@ -18,9 +18,9 @@ namespace polybody {
 
 /// Eigen's sparse LDLᵀ factorisation (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0. Rows without a
 /// diagonal block get the diagonal entry −ε. The matrix is then quasi-definite and has a factorisation in any order
-/// [Vanderbei 1995]. Iterative refinement with the matrix itself removes the error due to ε and to slight asymmetry
-/// (gyroscopic terms, damping of rotating bodies). If refinement does not contract, BiCGSTAB solves the equations with
-/// the factors as preconditioner [van der Vorst 1992].
+/// [Vanderbei 1995]. Iterative refinement with the matrix itself removes the error due to ε and to an asymmetry up to
+/// `largest_asymmetry` (gyroscopic terms, damping of rotating bodies). If refinement does not contract, BiCGSTAB solves
+/// the equations with the factors as preconditioner [van der Vorst 1992].
 class EigenLdlt {
  public:
   static constexpr double shift = 1e-9;  ///< ratio of ε to g²/a, where g and a are the largest entries of G and A

@@ -45,8 +45,8 @@ class LinearEquations {
   /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
   /// articulated-body algorithm, and for solvers without `mark_redundant`.
   virtual void mark_redundant(std::span<Index const> equations) = 0;
-  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
-  /// joints: see `BlockFactor::is_doubtful`.
+  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has relative pivots of at
+  /// most 1e-3 in closing joints: see `BlockFactor::is_doubtful`.
   virtual bool is_doubtful() const = 0;
   /// Computes the null vectors of the dropped equations, in the unknowns of the linear equations
   /// (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors. \param sizes
