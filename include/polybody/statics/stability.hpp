@@ -281,7 +281,7 @@ class DependentCoordinates {
 /// K is symmetrised. A negative pivot is counted only if its motion x has a negative xᵀK x. The sum xᵀK x is computed
 /// in long double and must be negative beyond the round-off of its terms.
 struct Stability {
-  Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
+  Index negative = -1;  ///< number of negative eigenvalues; −1: more than `most_entries` or `most_terms`
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none
 };
 
