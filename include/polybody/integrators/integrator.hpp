@@ -16,15 +16,15 @@ struct AttemptCost {
 struct StepReport {
   double taken = 0.0;        ///< length of the step [s]
   double next = 0.0;         ///< suggested length of the next step [s]
-  int iterations = 0;        ///< Newton iterations; 0 for an explicit step
+  int iterations = 0;        ///< Newton iterations, or corrections of positions in `Rattle`; otherwise 0
   int factorisations = 0;    ///< factorisations of the tangent or the mass matrix
   int evaluations = 0;       ///< evaluations of the forces
   int rejected = 0;          ///< trial steps that the step control rejected, and halved steps
   int halved = 0;            ///< failed steps that were repeated as two halves (`RunOptions::max_step_halvings`)
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
-  long choices = 0;   ///< selections of independent coordinates; set by `RungeKutta4` and `AdamsBashforthMoulton`
-  double left = 0.0;  ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
+  long choices = 0;          ///< selections of independent coordinates in `RungeKutta4` and `AdamsBashforthMoulton`
+  double left = 0.0;         ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {

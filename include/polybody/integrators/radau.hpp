@@ -206,8 +206,8 @@ struct Radau {
     StepReport tried;
     double reach = h;  // length of the stages [s]
     bool stages_lose_rank = false;
-    // Repetition 1: full Newton. Repetition 2: a matrix for each stage, with stages over h or 1.25 h. Repetition 3,
-    // only with constraint equations: with stages over the other of these two lengths.
+    // Repetition 1: full Newton. Repetition 2: a matrix for each stage, with stages over h, or over 1.25 h if they lose
+    // rank over h. Repetition 3, only with constraint equations: with stages over 1.25 h instead of h, or vice versa.
     for (int effort = 0, last = system.rows() > 0 ? 3 : 2;; ++effort) {
       bool const careful = effort > 0;
       if (effort == 2) stages_lose_rank = loses_rank(system, x, h, w);
