@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Energy-conserving and energy-decaying integrators, `EnergyMomentum` and `EnergyDecaying`, with their common step.
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -11,10 +13,10 @@ namespace polybody {
 //   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
 // f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains ε,
 // constraint functions Φ and potentials. With the stored energy V and the elastic stiffness C,
-//   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping) + (work of the loads),   Ḡ Δq = ΔΦ = 0.
+//   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping) + (work of the loads),   Ḡ Δq = ΔΦ = 0 (no drives).
 // Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
 //   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
-// With χ = 0, and without damping and loads, energy is conserved. The linear momentum changes by the impulse of the
+// With χ = 0, energy is conserved without damping, loads and drives. The linear momentum changes by the impulse of the
 // loads for every χ. The angular momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no
 // net moment. This condition holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of
 // `Continuum`, springs, and joints between points on their axes. With angles as coordinates, section frames
