@@ -23,7 +23,9 @@ struct StructureLoadOptions {
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< largest interpolated interval between samples [s]; 0: 1.5 times the median interval
   double balance_tolerance = 1e-3;  ///< allowed unbalanced force and moment, relative to the sum of the magnitudes
-  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
+  /// Nodes within this distance of a load share it [m]. Required for loads on nodes without rotations, except loads at
+  /// the points of `patches`.
+  double patch = 0.0;
   /// Nodes that share the load at the point `at`; only for nodes without rotations.
   std::vector<LoadPatch> patches = {};
 };
