@@ -115,10 +115,10 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 /// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
 /// deformation has no effect on the recorded motion.
 ///
-/// Of the solution, only the accelerations q̈ are used; with `Vibration::follows_deformation` also q and q̇. K e = Q −
-/// M Φ q̈, with the nodal loads Q, yields all nodal displacements e. The forces in a beam follow from the forces at its
-/// ends and the loads along it by equilibrium. The stress of static loads is then exact in every section, for any
-/// number of elements and modes ("mode acceleration" [Williams 1945]).
+/// Only the accelerations q̈ of the solution are used, or q, q̇ and q̈ if `Vibration::follows_deformation` is true. K e
+/// = Q − M Φ q̈, with the nodal loads Q, yields all nodal displacements e. The forces in a beam follow from the forces
+/// at its ends and the loads along it by equilibrium. The stress of static loads is then exact in every section, for
+/// any number of elements and modes ("mode acceleration" [Williams 1945]).
 ///
 /// Example of a filtered history (signals/filter.hpp):
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
