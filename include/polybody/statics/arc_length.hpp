@@ -160,7 +160,8 @@ class PathEquations {
 /// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
 /// minimum norm.
 /// \throws NewtonConvergenceFailure naming the load factor if a step would be shorter than `min_step`, SingularMatrix
-/// if the path has no tangent at the start, NonFiniteValue.
+/// if the path has no tangent at the start, NonFiniteValue, InvalidInput for invalid options or a state that does not
+/// fit the model.
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

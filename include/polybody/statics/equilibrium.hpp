@@ -297,7 +297,8 @@ template <class Solver>
 /// The report names these constraints and motions.
 ///
 /// \throws NewtonConvergenceFailure; SingularMatrix, naming the motion if a load excites a motion without stiffness;
-/// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue. x is then unchanged.
+/// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue; InvalidInput for
+/// invalid options or a state that does not fit the model. x is then unchanged.
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   options.check();
