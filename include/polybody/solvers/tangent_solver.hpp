@@ -28,6 +28,7 @@ class LinearEquations {
   virtual ~LinearEquations() = default;
 
   /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
+  /// \throws InvalidInput for several copies in a model with `joint_coordinates::ArticulatedBody`
   virtual void analyse(System& system, Index copies, BlockWriter const& write) = 0;
   /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1 on success,
   /// otherwise the index of an equation without a pivot, for `name_of_equation`.

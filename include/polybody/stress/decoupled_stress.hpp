@@ -127,14 +127,14 @@ class DecoupledStress {
   /// Quasi-static stress from K e = Q at each sample. The result is valid if the loads change slowly compared with the
   /// structure's vibrations. The stress is independent of `frame`, because recorded loads are balanced. The
   /// displacements are relative to `frame`.
-  /// \throws InvalidInput like `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
+  /// \throws InvalidInput like `StructureLoads`, for a structure with pretension, and for a frame that restrains some,
+  /// but not all rigid motions.
   template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads`, for shapes
-  /// that do not fit the structure or move a coordinate that the frame fixes, and for less than one substep.
-  /// Exceptions of the integrator are passed on.
+  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads` and
+  /// `vibration_of`, and for a structure with pretension. Exceptions of the integrator are passed on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
@@ -206,7 +206,7 @@ class DecoupledStress {
   }
   /// Axial and shear stress at the point (y, z) [m] of the section at arc length s [m] of bar number `bar`, with the
   /// section and material of the bar `of`. The result yields the principal stresses and the von Mises stress. \throws
-  /// InvalidInput like `section_stress`.
+  /// InvalidInput like `section_forces` and `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;

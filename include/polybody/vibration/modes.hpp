@@ -219,7 +219,7 @@ struct DampedModes {
 ///
 /// Each first-order state adds one mode. The additional coordinates with these states as rates occur in no equation and
 /// are removed from the matrix.
-/// \throws InvalidInput if a motion that the constraint equations permit has no inertia.
+/// \throws InvalidInput if a motion that the constraint equations permit has no inertia, and for a `count` below 1.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "damped_modes");
