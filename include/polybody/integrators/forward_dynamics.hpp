@@ -20,7 +20,7 @@ struct ConstraintFeedback {
   double position = 0.0;  ///< factor of Φ [1/s²]
 };
 
-/// Measure of the distance from a singular configuration.
+/// Measure of the distance from a singular configuration; both numbers are larger near such a configuration.
 struct ConstraintGain {
   double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1 [1]
   std::size_t dropped = 0;  ///< number of redundant constraint equations
