@@ -203,7 +203,7 @@ class CoordinateMaps : public StepCoordinates<T> {
         last_r_(v_),
         reduced_(Vector::Constant(reduction_.velocities(), T(0.0))) {}
 
-  /// Layout of reduced vectors, as far as the maps define it.
+  /// Layout of reduced vectors. `ReducedCoordinates` adds the linear equations of a time step.
   ReducedLayout reduced_layout() const {
     ReducedLayout n{.coordinates = reduction_.coordinates(),
                     .velocities = reduction_.velocities(),
