@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Concepts of bodies: the members that a formulation must have. The last function computes the load stiffness of a
-/// marker by dual numbers.
+/// Concepts of bodies, which list the members that a body type must have. Further contents are the workspaces of loops
+/// over elements, and the load stiffness of a marker by dual numbers.
 
 #include <span>
 
