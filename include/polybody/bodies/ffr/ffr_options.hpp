@@ -54,15 +54,16 @@ enum class FfrFrame {
 
 /// Placement of a body, terms of its inertia, frame, stiffening and damping.
 struct FfrOptions {
-  Placement placement = {};  ///< initial placement of the frame
+  Placement placement = {};  ///< initial placement of the frame; a body from a bar has the placement of the bar
   FfrTerms terms = {};       ///< selected terms of the inertia
   /// Frame of the deformation. Default for a body from a bar: `mean_axes`. Default for a body from a structure: the
   /// frame in which its shapes are given; the shapes remain unchanged.
   std::optional<FfrFrame> frame = {};
   /// Geometric stiffening, for beams only. Default: on for a body from a bar, off for a body from a structure.
   std::optional<bool> stiffening = {};
-  /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of both
-  /// ends replace the nodal coordinates [Craig & Bampton 1968]. The resulting basis is suitable for joints at the ends.
+  /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of the
+  /// second end relative to the first (6, in the plane 3) replace the nodal coordinates [Craig & Bampton 1968]. The
+  /// resulting basis is suitable for joints at the ends.
   std::optional<Index> modes = {};
   double stiffness_damping = 0.0;  ///< damping time τ [s]; adds τ K to the damping matrix
 
