@@ -127,8 +127,8 @@ class ElasticChain : public NodeChain<columns> {
     for_each_group(e, [&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
   }
 
-  /// Strain energy of element e [J]. With a pretension, its value in the reference configuration depends on the type of
-  /// beam: zero, or the energy of the prestress.
+  /// Strain energy of element e [J]. With a pretension N, an undeformed element of length l has the energy N² l/(2 EA)
+  /// in `AncfBeam`, and zero in cables and planar beams.
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = of_element(e, q);
     double u = 0.0;

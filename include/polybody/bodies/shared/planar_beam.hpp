@@ -106,7 +106,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return beam;
   }
 
-  /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
+  /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension. For zero
+  /// pretension
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, where ε⁰ are the strains when all nodes are on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
   /// \throws InvalidInput for n outside [1, 10⁷], a bar without a stiffness that the theory needs, and a curve that
