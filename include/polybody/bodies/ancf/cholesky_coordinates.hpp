@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4].
+/// Bodies in Cholesky coordinates, for which the mass matrix is the identity [Yakoub & Shabana 1999; thesis §4.4].
 
 #include <vector>
 

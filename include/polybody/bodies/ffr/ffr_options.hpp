@@ -15,7 +15,7 @@ namespace polybody {
 struct FfrTerms {
   bool coupling = true;  ///< m_rf: C and H in the mass matrix; ċ, Ċ q̇, H q̇ and H˙ q̇ in the rows of the frame
   bool onto_frame =
-      true;  ///< the terms of `coupling` in the rows of the frame; if false, the deformation does not act on the frame
+      true;  ///< the terms of `coupling` in the rows of the frame; if false, q acts on the frame only by c, J and J˙
   bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body instead of those at q = 0, in inertia and weight
   bool frame_velocities = true;  ///< quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇ on the frame; if
                                  ///< false, only those of a rigid body remain
@@ -33,7 +33,7 @@ struct FfrTerms {
 
   /// Returns true if accelerations of the deformation act on the frame.
   bool couples_to_frame() const { return coupling && onto_frame; }
-  /// Returns true if velocities of the deformation act on the frame.
+  /// Returns true if ċ, Ċ q̇, H q̇ and H˙ q̇ act on the frame.
   bool couples_frame_velocity() const { return couples_to_frame() && frame_velocities; }
   bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< true if J˙ acts on the frame
   /// Selected part of a derivative ∂J_p/∂q_k, from its value `slope` at q and its value `by` at q = 0.
