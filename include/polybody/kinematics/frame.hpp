@@ -40,7 +40,7 @@ enum class MarkerKind { point, axis, frame };
 /// Dimension of a body: plane or space. A joint connects bodies of equal dimension; the ground has both dimensions.
 enum class World { plane, space, both };
 
-/// True if bodies of the dimensions a and b can be connected: both plane, both space, or at least one the ground.
+/// True if bodies of the dimensions a and b can be connected: both plane, both space, or one of them the ground.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
 /// Initial position and orientation of a body in the world.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Markers, material points of a body in a model, and handles of bodies.
+/// Markers (material points of a body in a model), and handles of bodies, which create markers.
 
 #include <cstdint>
 #include <initializer_list>
