@@ -10,7 +10,7 @@
 
 namespace polybody::detail {
 
-// Error messages for types that are not a geometry or not a policy; each names the missing member.
+// Error messages for invalid types of geometries and policies. Each message names the missing member.
 
 template <class P, int m>
 concept HasMultiplier = requires(P const p, Vec<double, m> const g) {

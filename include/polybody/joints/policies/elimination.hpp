@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies, and linear joints of ANCF bodies.
+/// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies and floating frames, and linear joints
+/// of ANCF bodies.
 
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/policies/policy.hpp>
@@ -14,15 +15,15 @@ namespace joint_coordinates {
 struct Augmented {};
 /// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
 /// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so the method
-/// is efficient only if they are few.
+/// is efficient only if they are few. The method supports rigid bodies only.
 struct ArticulatedBody {};
 }  // namespace joint_coordinates
 
 /// Joint coordinates: the pose of body b is the pose of body a followed by the relative motion of the joint. The
 /// unknowns of a time step are the coordinates of this motion alone. These coordinates satisfy the joint's constraint
 /// equations exactly; multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from
-/// the ground, or from a free body; a joint that closes a loop needs another policy. The bodies must be rigid [Shabana
-/// 2020, §3; thesis §3.3.2].
+/// the ground, or from a free body; a joint that closes a loop needs another policy. The bodies must be rigid bodies or
+/// floating frames (`Ffr`) [Shabana 2020, §3; thesis §3.3.2].
 template <class Path>
 struct JointCoordinatesBy {
   static constexpr char const* name = "JointCoordinates";
