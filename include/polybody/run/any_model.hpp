@@ -28,7 +28,7 @@ inline constexpr char integrator_tag = 0;
 /// bodies and joints for their handles.
 class AnyModel {
  public:
-  /// Stores the model, and functions that evaluate M and step it with each of the integrators Is.
+  /// Stores the model, and functions that evaluate the model and step it with each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
       : reference_(model->reference_state()), system_(&questions<M>), problem_size_(polybody::problem_size(*model)) {

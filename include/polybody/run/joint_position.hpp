@@ -154,9 +154,9 @@ double joint_translation_rate(System const& system, ElementHandle<J> const& join
 ///   for (State const& now : simulate(…)) angle = turns.record(now);
 /// The angle of the first state lies in (−π, π]. From state to state, θ₁ = θ₀ + Δ. Of all increments Δ that agree with
 /// the angles of the two states up to full turns, the one nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀) is taken. The count is
-/// correct if the error of this estimate is below half a turn. This condition is satisfied for each step of a run, and
-/// between any two states if the rate is constant. `record` does not allocate memory. The model must outlive the
-/// counter and must not change after its construction.
+/// correct if the error of this estimate is below half a turn. Steps that resolve the rotation satisfy this condition.
+/// At constant rate, the interval between two states can have any length. `record` does not allocate memory. The model
+/// must outlive the counter and must not change after its construction.
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:

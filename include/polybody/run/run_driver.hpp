@@ -79,7 +79,8 @@ class RunDriver {
     step_.remainder = step_.plan.h < 0.01 * length;
     return step_;
   }
-  /// Takes the planned step of `run`, which replaces x. After an exception x and the driver are unchanged.
+  /// Takes the planned step of `run` from x, and stores the end of the step in x. After an exception x and the driver
+  /// are unchanged.
   template <class Run>
   void take_step(State& x, Run& run) {
     RunStep& s = step_;
@@ -103,8 +104,8 @@ class RunDriver {
   template <class Run>
   StepReport halving_step(State& x, double h, int halvings, Run& run);
 
-  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues as a
-  /// resumed run.
+  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues like
+  /// a resumed run.
   [[gnu::cold]] void store(RunSnapshot& to) {
     events_.forget();
     to.step = h_;

@@ -121,8 +121,8 @@ struct RunReport : RunCounts {
   std::vector<std::string> redundant = {};
   /// Warnings as text. At the start: a singular configuration whose velocities do not determine a branch of the motion,
   /// and a step beyond the stability limit of an explicit integrator. In a step: a singular configuration at which the
-  /// velocities jumped to another branch, and axial forces near buckling that a beam neglects. At the end: energy that
-  /// no work explains.
+  /// velocities jumped, and axial forces of at least 5 % of the buckling load that a beam neglects. At the end: energy
+  /// that no work explains.
   std::vector<std::string> warnings = {};
 
   /// Adds the warning `sentence` if it is not empty.

@@ -31,11 +31,11 @@ class StepPlan {
   /// Next step of a run.
   struct Next {
     double target, h;   ///< latest end of the step [s]; length of the step [s]
-    bool lands, jumps;  ///< in order: true if the step ends at `target`; true if `target` is a breakpoint
+    bool lands, jumps;  ///< in order: true if the step ends at `target`; true if it ends at a breakpoint
   };
 
   StepPlan() = default;
-  /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside this interval are ignored.
+  /// Run from `start` to `end_time` with steps of about `step` [s]. Breakpoints outside (start, end_time] are ignored.
   [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
       : end_time_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
     erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
