@@ -29,7 +29,8 @@ void for_each_row_block(Data<T> const& data, F&& f) {
     if (block.row >= 0 && !data.leaves_out(block)) f(block);
 }
 
-/// r += mapᵀ λ of both ends of a block. \tparam m number of constraint equations; 0 stands for block.rows
+/// r += Jᵀ mapᵀ λ of both ends of a block, with the Jacobian J of the end's marker. J is omitted for an end without a
+/// marker. \tparam m number of constraint equations; 0 stands for block.rows
 template <int m, StateScalar T>
 void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   if constexpr (m > 0)
