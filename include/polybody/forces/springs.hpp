@@ -67,7 +67,7 @@ struct AxialSpring {
 
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
-  double preload = 0.0;        ///< P, force at s = 0 [N]
+  double preload = 0.0;        ///< P [N]: at s = 0 the force on b is −P along the axis
   Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a
 
   template <class = void>  // compiled where it is used
