@@ -106,7 +106,7 @@ template <class P>
 constexpr auto default_policy() {
   static_assert(std::is_default_constructible_v<P>,
                 "The parameters of this policy have no default values. Give them after the geometry: "
-                "Joint<Revolute, Penalty>{Revolute{}, {.stiffness = 1e8, .damping = 1e4}}.");
+                "Joint<Revolute, Penalty>{Revolute{.axis = axis}, {.stiffness = 1e8, .damping = 1e4}}.");
   if constexpr (std::is_default_constructible_v<P>) return P{};
 }
 }  // namespace detail

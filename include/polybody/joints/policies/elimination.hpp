@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies and floating frames, and linear joints
-/// of ANCF bodies.
+/// of ANCF bodies and of `planar::Lrvf`.
 
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/policies/policy.hpp>
@@ -39,14 +39,14 @@ using JointCoordinates = JointCoordinatesBy<joint_coordinates::Augmented>;
 template <class P>
 concept JointCoordinatePolicy = EliminatingPolicy<P> && requires { typename P::Solution; };
 
-/// Linear joint of ANCF bodies. Its equations contain positions and position gradients, which are linear in the
-/// coordinates,
+/// Linear joint of ANCF bodies and of `planar::Lrvf`. Its equations contain positions and position gradients, which are
+/// linear in the coordinates,
 ///   S_a e_a − S_b e_b = c,
 /// with the nodal coordinates e of both bodies, constant matrices S of shape functions and their derivatives, and
 /// constants c.
 /// Dependent coordinates are eliminated before the run. The mass matrix stays constant, and a time step has no
 /// multipliers. Reactions are computed afterwards from the balance of each element [thesis §3.5.4; Shabana, Hamed,
-/// Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
+/// Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to these bodies or the ground.
 ///   Spherical (in the plane Revolute): equal positions r.
 ///   Revolute about n: equal r and equal gradients r_α, with the material line α along n. Six equations between bodies
 ///     with all gradients.
