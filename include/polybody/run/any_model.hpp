@@ -38,7 +38,7 @@ class AnyModel {
 
   State const& reference_state() const { return reference_; }  ///< state with the bodies as built, at rest
   ProblemSize const& counts() const { return problem_size_; }  ///< problem size at construction
-  /// System of the full model, with the evaluation of motion and energies.
+  /// System of the full model, for energies, powers and momenta of its states.
   System system() const { return system_(model_.get()); }
   SystemSource source() const { return {system_, model_.get()}; }  ///< source of systems of the full model
 

@@ -160,7 +160,7 @@ double joint_translation_rate(System const& system, ElementHandle<J> const& join
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
-  /// Counter without states for a joint of `model`. \throws InvalidInput like `joint_angle`.
+  /// Counter without states for a joint of `model`. \throws InvalidInput for a handle of another model.
   template <class M, class J>
   TurnCounterOf(M const& model, ElementHandle<J> const& joint)
       : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}
@@ -183,8 +183,8 @@ class TurnCounterOf {
     started_ = false;
     return record(x);
   }
-  /// Adds state x. Returns the angle with its full turns [rad].
-  /// \throws InvalidInput for a state of another model, and for a state earlier than the last one.
+  /// Adds state x. Returns the angle with its full turns [rad]. \throws InvalidInput for a state of another model, for
+  /// a state earlier than the last one, and for a marker without axes.
   double record(State const& x) {
     require_usable(system_, x);
     if (started_ && !(x.t >= t_))

@@ -13,13 +13,13 @@ namespace polybody {
 
 /// Step of a run.
 struct RunStep {
-  StepPlan::Next plan{};       ///< planned end of the step
-  StepReport report;           ///< length and cost of the step, up to its planned end
-  Sequence<double> lengths;    ///< lengths of the parts of the step [s]; several parts only before an event
-  bool remainder = false;      ///< true for a short step to the time grid, after a breakpoint or an event
-  bool reached = false;        ///< true if the integrator reached `plan.target`
-  bool met = false;            ///< true if an event ends the step
-  bool acts = false;           ///< true if an event that ends the step changes the state
+  StepPlan::Next plan{};     ///< planned end of the step
+  StepReport report;         ///< length and cost of the step, up to its planned end
+  Sequence<double> lengths;  ///< lengths of the parts of the step [s]; several parts only before an event
+  bool remainder = false;    ///< true for a step below 1 % of the requested length, up to a breakpoint or the end time
+  bool reached = false;      ///< true if the integrator reached `plan.target`
+  bool met = false;          ///< true if an event ends the step
+  bool acts = false;         ///< true if an event that ends the step changes the state
   bool at_breakpoint = false;  ///< true if the step ends at a breakpoint
   bool restarts = false;       ///< true if the integrator must start again at the end of the step
 };
