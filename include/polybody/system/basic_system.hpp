@@ -238,7 +238,7 @@ class BasicSystem {
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// Sets the number of threads that share the loops over elements, markers and joints, including the calling thread.
-  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one thread.
+  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one thread or more than 4096.
   void use_threads(int threads);
 
   /// r = M a − f + Gᵀλ (nv).
