@@ -124,8 +124,8 @@ template <class = void>
        " m of its assembly. Place the bodies so that the violation vanishes, or call assemble(model, x)."});
 }
 
-/// \throws InconsistentInitialConditions if redundant equations contradict each other, so that no configuration
-/// satisfies them; the message names their joints.
+/// Factorises `forward` at x. \throws InconsistentInitialConditions if redundant equations contradict each other, so
+/// that no configuration satisfies them; the message names their joints.
 template <class Solver>
 [[gnu::cold]] void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!all_finite(x.q)) return;

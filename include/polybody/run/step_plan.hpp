@@ -62,7 +62,7 @@ class StepPlan {
     // equations that are divided by the square of a tiny step.
     bool const lands = 1.01 * h >= left;
     if (lands && breakpoint) return {target, step_to_just_before(target, t), true, true};
-    // A last step that differs from h by round-off only has the length h, as in a run with a later end time.
+    // If a last step differs from h only by round-off, its length is h, as in a run with a later end time.
     return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 

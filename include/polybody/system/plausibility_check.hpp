@@ -175,8 +175,8 @@ class PlausibilityCheck {
     double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
     return few * account_.energy * account_.scale;
   }
-  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error [J]:
-  /// given up to the last balance, returned up to this step \throws NewtonConvergenceFailure if a halving is possible
+  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error [J]: on entry
+  /// at the last balance, on return at this step \throws NewtonConvergenceFailure if a halving is possible
   template <class = void>
   void require_small_gain(System& system, StepResult const& end, double& gained, double& doubt);
   template <class = void>

@@ -155,8 +155,8 @@ struct UserOperations final : ModelOperations<double> {
     k += c.mass * m;
     sink.add(0, 0, k);
   }
-  /// k −= factor ∂(f, h)/∂x for the `count` entries from `first` on of x, which is q or v. Uses central differences
-  /// with the step 1e-6 (1 + |x|).
+  /// k −= factor ∂(f, h)/∂x for `count` entries of x from entry `first` on; x is q or v. Uses central differences with
+  /// the step 1e-6 (1 + |xⱼ|) for entry j.
   void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
     if (factor == 0.0) return;
     x_near = x;
