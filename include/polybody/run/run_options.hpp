@@ -151,6 +151,7 @@ struct RunReport : RunCounts {
   /// resolve the work of a force, or if steps were halved for their energy gain.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
+    char const* const were_halved = run.halved == 1 ? " step was halved" : " steps were halved";
     if (found.worst > 0.4 * found.scale)
       add_warning(sentence_of({"The work of a force over one step is uncertain by ", found.worst,
                                " J, more than 40 % of the exchanged energy (", found.scale,
@@ -160,16 +161,16 @@ struct RunReport : RunCounts {
           sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
                        std::abs(found.energy) / found.scale, " of the exchanged energy (", found.scale, " J); ",
-                       run.halved, " steps were halved. Repeat the run with half the step and compare."}));
+                       run.halved, were_halved, ". Repeat the run with half the step and compare."}));
     else if (found.peak > 2.0 * limit * found.scale)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion gains up to ", found.peak,
                                " J that no work explains, ", found.peak / found.scale, " of the exchanged energy (",
-                               found.scale, " J), and loses energy later; ", run.halved,
-                               " steps were halved. Repeat the run with half the step and compare."}));
+                               found.scale, " J), and loses energy later; ", run.halved, were_halved,
+                               ". Repeat the run with half the step and compare."}));
     else if (found.halved > 0)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
-                               " steps gained energy that no work explains; ", run.halved,
-                               " steps were halved. Repeat the run with half the step and compare."}));
+                               found.halved == 1 ? " step" : " steps", " gained energy that no work explains; ",
+                               run.halved, were_halved, ". Repeat the run with half the step and compare."}));
   }
 };
 

@@ -251,10 +251,12 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   if (account_.energy < never) work_.begin(system, place);
   laws_.begin(layout, place.t, 1e-6 * place.h);
   lossless_ = work_.complete();
+  bool changes = false;
   for (BodyLayout const& body : layout.bodies) {
     lossless_ = lossless_ && body.lossless;
-    if (body.changes) account_.energy *= 100.0;  // the body's energy changes without work
+    changes = changes || body.changes;
   }
+  if (changes) account_.energy *= 100.0;  // the energy of these bodies changes without work
   for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
   for (std::size_t i = 0; i < layout.forces.size(); ++i) {
     ForceLayout const& force = layout.forces[i];
