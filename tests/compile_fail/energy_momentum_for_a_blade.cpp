@@ -1,4 +1,4 @@
-// refused: EnergyMomentum does not support nonholonomic joints
+// refused: EnergyMomentum and EnergyDecaying do not support nonholonomic joints
 // A blade constrains a velocity: there is no constraint function whose change over a step could be computed.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>

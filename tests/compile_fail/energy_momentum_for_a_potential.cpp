@@ -1,4 +1,4 @@
-// refused: EnergyMomentum needs the potential of a force for general scalars
+// refused: EnergyMomentum and EnergyDecaying need the potential of a force for general scalars
 // Its potential accepts doubles only.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>

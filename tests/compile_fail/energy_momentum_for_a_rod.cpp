@@ -1,4 +1,4 @@
-// refused: EnergyMomentum needs bodies with a constant mass matrix
+// refused: EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix
 #include <polybody/polybody.hpp>
 
 using namespace polybody;

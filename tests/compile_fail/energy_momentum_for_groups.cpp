@@ -1,4 +1,4 @@
-// refused: EnergyMomentum does not support force groups
+// refused: EnergyMomentum and EnergyDecaying do not support force groups
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>

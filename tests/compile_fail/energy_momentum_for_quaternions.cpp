@@ -1,4 +1,4 @@
-// refused: EnergyMomentum needs bodies with a constant mass matrix
+// refused: EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/run/simulate.hpp>

@@ -34,7 +34,7 @@ class LinearEliminationOf {
 
   LinearEliminationOf() = default;
   /// Eliminates coordinates with the equations of `joints`. Redundant equations are omitted. \throws
-  /// InconsistentInitialConditions if equations contradict each other.
+  /// InconsistentInitialConditions if equations contradict each other by more than 1e-8 [unit of the equation].
   explicit LinearEliminationOf(Sequence<LinearConstraints> const& joints) {
     for (LinearConstraints const& rows : joints)
       for (Index i = 0; i < rows.rows(); ++i) take(rows, i);

@@ -48,7 +48,8 @@ class ReducedSlotsOf {
       pieces_.back().col += int(col);
     }
   }
-  /// Ends the recording of a block of rows×cols entries. A block of many small pieces is scattered entry by entry.
+  /// Ends the recording of a block of rows×cols entries. A block of more than four pieces with a mean of fewer than
+  /// eight entries is scattered entry by entry.
   void end_block(Index rows, Index cols) {
     std::size_t const count = pieces_.size() - first_;
     bool const scatters = count > 4 && std::size_t(rows * cols) < 8 * count;
@@ -189,7 +190,7 @@ class UnknownMapOf {
  private:
   bool plain(std::size_t i) const { return targets_[i].size() == 1 && targets_[i][0].factor == 1.0; }
   Sequence<Sequence<Target>> targets_;
-  Sequence<Index> run_end_;  // end of the run that contains unknown i; i itself if it is not plain
+  Sequence<Index> run_end_;  // end of the run (see `run`) that contains unknown i; i if no run contains it
 };
 
 /// Cache that reduced sinks reuse in every assembly: ranges of unknowns, and workspace for blocks, by rows.

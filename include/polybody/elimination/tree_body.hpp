@@ -26,7 +26,7 @@ struct TreeBody {
   RigidLayout layout = RigidLayout::quaternion;  ///< layout of its coordinates
   Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity in full vectors
   Index row = -1;                                ///< first constraint equation of its joint; −1: a root, without joint
-  Index parent = -1;                             ///< index in the tree; −1: the ground
+  Index parent = -1;                             ///< index in the tree; −1: the ground, or none for a root
   Placement from = {};                           ///< frame of the joint in the axes of the parent
   Placement to = {};                             ///< frame of the joint in the axes of the body
   bool from_turned = true, to_turned = true;     ///< true if frame `from` or `to` is rotated relative to its body

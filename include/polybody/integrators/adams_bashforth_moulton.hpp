@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Adams predictor–corrector method of variable order and step: `AdamsBashforthMoulton`, with the past points that it
+/// stores in a state: `AdamsHistory`.
 
 #include <array>
 
@@ -108,7 +111,8 @@ struct AdamsBashforthMoulton {
   int max_order = order;              ///< highest permitted order, in [1, 12]
   Stabilisation stabilisation = {};   ///< constraint stabilisation
 
-  /// \throws InvalidInput for tolerances and steps that are not positive, or a highest order outside [1, 12].
+  /// \throws InvalidInput unless the tolerances and `min_step` are positive and finite, `max_order` is in [1, 12], and
+  /// the options of `stabilisation` are valid.
   void check() const {
     require_positive(relative_tolerance, "AdamsBashforthMoulton: the relative tolerance");
     require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
@@ -179,7 +183,8 @@ struct AdamsBashforthMoulton {
     AdamsHistory::reset(x.history, w.f);
   }
 
-  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached.
+  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached if the
+  /// tolerance requires a step below `min_step`.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     AdamsHistory history(x.history, w.y.size());
@@ -237,7 +242,8 @@ struct AdamsBashforthMoulton {
   }
 
  private:
-  /// Error estimates of orders k − 2, k − 1, k and k + 1; infinite if too few past points are known.
+  /// Error estimates of orders k − 2, k − 1, k and k + 1. An estimate is zero for orders below 1. It is infinite for
+  /// orders above 12, or if too few past points are known.
   struct Errors {
     double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< errors relative to the tolerance
     /// True if the estimates favour order k − 1 over order k [Shampine & Gordon 1975].
@@ -246,8 +252,8 @@ struct AdamsBashforthMoulton {
     }
   };
 
-  /// Trial step of length h at order k, with the weights `c` of the differences and the `age` of each `known` past
-  /// point.
+  /// Trial step of length h at order k. `c` are the weights of the differences, `age` are the ages of the points [s],
+  /// and `known` is the number of known points.
   struct Trial {
     std::array<double, order + 2> const &c, &age;
     double h;  ///< length of the step [s]
@@ -264,8 +270,8 @@ struct AdamsBashforthMoulton {
     }
   }
 
-  /// Stores c_k D*_k in w.correction and returns the error estimates: `ErrorNorm` of coordinates and velocities, plus
-  /// the mean square over first-order states, each relative to its own tolerance.
+  /// Stores c_k D*_k in w.correction and returns the error estimates. The square of an estimate is that of `ErrorNorm`
+  /// for coordinates and velocities, plus the mean square over first-order states, each relative to its own tolerance.
   template <class W>
   Errors correct(System const& system, AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
     auto const& [c, age, h, k, known] = trial;
@@ -305,8 +311,9 @@ struct AdamsBashforthMoulton {
     return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
   }
   /// Returns the next step, and stores the next order in k. While `rising` after a start, each step raises the order by
-  /// one and doubles the step. Later, the order with the smallest error estimate is selected, and this estimate decides
-  /// if the step is doubled, kept or reduced.
+  /// one and doubles the step, until the order is `max_order` or the estimates favour a lower order. Later, the
+  /// estimates select order k − 1, k or k + 1. The estimate of the selected order decides if the step is doubled, kept
+  /// or reduced.
   double choose(Errors const& e, double h, int& k, int known, bool& rising) const {
     double error = e.here;
     bool const higher = k > 1 ? e.above < error && error < std::max(e.two_below, e.below) : e.above < 0.5 * error;

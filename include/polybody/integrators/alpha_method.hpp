@@ -5,12 +5,12 @@
 ///   M v̇₁ = f₁ − Gᵀλ₁,  Φ(q₁) = 0,
 ///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
-/// The Newton unknown is y = Δa₁, with Δq = βh² y, Δv = γh y and Δv̇ = (1 − α_m)/(1 − α_f) y. The constraint equations
-/// are divided by βh², so that the entries of the tangent have the magnitude of M and G for any h. Nonholonomic
-/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh, so that their rows of the tangent are also rows
-/// of G. First-order states use the formulas of a and v, which are the formulas of the family for ż = h(z, t) [Jansen,
-/// Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ only in the four
-/// coefficients.
+/// The Newton unknowns are y = Δa₁ and Δλ₁, with Δq = βh² y, Δv = γh y and Δv̇ = (1 − α_m)/(1 − α_f) y. The constraint
+/// equations are divided by βh², so that the entries of the tangent have the magnitude of M and G for any h.
+/// Nonholonomic equations, G v + Φ_t = 0 at the end of the step, are divided by γh, so that their rows of the tangent
+/// are also rows of G. First-order states use the formulas of a and v, which are the formulas of the family for ż =
+/// h(z, t) [Jansen, Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ
+/// only in the four coefficients.
 ///
 /// A stabilised step also satisfies the derivatives of the constraint equations, Φ̇(q₁, v₁) = 0, by a second set of
 /// multipliers μ [Gear, Gupta & Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
@@ -95,9 +95,9 @@ struct AlphaMethod {
     return advance(system, x, h, w);
   }
 
-  /// Stores v₀ and a₀ of a step of h [s] from x in w. If v and a of the history include the start correction of another
-  /// step length, corrects v₀ and a₀ and returns true. \param corrected applies or omits this correction; if empty, it
-  /// is applied if h resolves the motion
+  /// Stores v₀ and a₀ of a step of h [s] from x in w. With `start_correction`, corrects them and returns true if v and
+  /// a of the history are not yet corrected for h. \param corrected applies or omits this correction; if empty, it is
+  /// applied after a start, and later if h resolves the motion
   template <class Solver>
   bool start_step(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
@@ -119,7 +119,7 @@ struct AlphaMethod {
   /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
 
-  /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of the last step if `careful`.
+  /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of x if `careful`.
   void guess(State& x, double h, bool careful, AlphaVectors& w) const {
     if (careful) {
       w.vd = x.a;
@@ -175,7 +175,8 @@ struct AlphaMethod {
                               .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
-  /// Right-hand side of a correction: −r, and the scaled violations of the constraint equations.
+  /// Right-hand side of a correction: −r, and the scaled violations of the constraint equations or their rates, with
+  /// opposite sign.
   void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic_equations,
                        AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.phi.size();
@@ -189,7 +190,7 @@ struct AlphaMethod {
   }
 
   /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns −1 on
-  /// success, otherwise the index of the unknown without a pivot.
+  /// success, otherwise the index of the equation without a pivot.
   template <class Solver>
   Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
                  bool surrogate_friction = true) const {

@@ -49,7 +49,8 @@ struct AlphaVectors {
     }
   }
   /// Computes `jerk` by one-sided differences of the accelerations `now`, and of those after h/4, h/2 and h [s]
-  /// (`quarter`, `half`, `full`). Returns true if the differences over h/2 and over h agree.
+  /// (`quarter`, `half`, `full`). Returns true if the results over h/2 and over h differ by at most half the norm of
+  /// `jerk`.
   bool find_jerk(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h) {
     VecX mismatch(now.size());
     for (Index i = 0; i < now.size(); ++i) {

@@ -6,8 +6,8 @@ namespace polybody {
 
 /// Explicit central differences in their one-step form,
 ///   v½ = v₀ + ½h v̇₀,  q₁ = q₀ ⊞ h v½,  v̇₁ = accelerations(q₁, v½ + ½h v̇₀),  v₁ = v½ + ½h v̇₁,
-/// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1]. Rigid bodies rotate by `FreeRotations` between the half
-/// steps of v, so the energy of a freely rotating body is conserved.
+/// of order two, stable without damping for h < 2/ω_max [Hughes 2000, §9.1]. Rigid bodies in space rotate by
+/// `FreeRotations` between the half steps of v, so the energy of a freely rotating body is conserved.
 template <class Stabilisation = UnconstrainedOnly>
 struct CentralDifference {
   static constexpr char const* name = "CentralDifference";

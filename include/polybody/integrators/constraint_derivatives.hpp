@@ -162,7 +162,7 @@ class ConstraintDerivatives {
     gamma_ = there_ = here_;
   }
 
-  /// Computes the derivatives at q, v, v̇ = `vd` and t; afterwards `system` is evaluated at another state.
+  /// Computes the derivatives at q, v, v̇ = `vd` and t. The last evaluation of `system` is then at another state.
   template <class = void>  // compiled only if used
   void measure(System& system, VecX const& q, VecX const& v, VecX const& vd, double t) {
     if (colours_ == 0) return;

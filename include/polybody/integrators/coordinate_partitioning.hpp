@@ -21,8 +21,8 @@ namespace polybody {
 /// leaves more than a quarter of the violation, G_d is factorised again and the partition is checked.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
-  double tolerance = 1e-12;     ///< tolerance of Φ [m], [rad], in addition to the round-off of q
-  int max_iterations = 10;      ///< limit of Newton iterations for the positions
+  double tolerance = 1e-12;     ///< tolerance of Φ [m], [rad], and for sparse G also of Φ̇, in addition to round-off
+  int max_iterations = 10;      ///< limit of Newton iterations; with sparse G three times as many corrections
   double largest_ratio = 10.0;  ///< largest rate of a dependent coordinate relative to that of an independent one
   int dense_up_to = 60;         ///< number of velocities up to which G is dense
 
@@ -115,7 +115,8 @@ struct CoordinatePartitioning {
     }
   }
 
-  /// Corrects positions and velocities. \throws NewtonConvergenceFailure if a correction does not converge.
+  /// Corrects positions and velocities. \throws NewtonConvergenceFailure if the corrections do not converge. \throws
+  /// SingularMatrix if a sparse G_d is singular.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
@@ -263,7 +264,7 @@ struct CoordinatePartitioning {
 };
 
 /// Names of the independent velocities that are selected first in a run from x: body, and index of the velocity in the
-/// body.
+/// body, counted from 0.
 template <class = void>
 std::vector<std::string> independent_velocities(System& system, State const& x,
                                                 CoordinatePartitioning const& policy = {}) {

@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Energy-conserving and energy-decaying integrators, `EnergyMomentum` and `EnergyDecaying`, with their common step.
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -11,15 +13,15 @@ namespace polybody {
 //   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
 // f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains ε,
 // constraint functions Φ and potentials. With the stored energy V and the elastic stiffness C,
-//   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
+//   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping) + (work of the loads),   Ḡ Δq = ΔΦ = 0 (no drives).
 // Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
 //   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
-// With χ = 0, energy is conserved. The linear momentum changes by the impulse of the loads for every χ. The angular
-// momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no net moment. This condition
-// holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of `Continuum`, springs, and
-// joints between points on their axes. With angles as coordinates, section frames (`ElasticLine`) and joints of axes,
-// energy is also conserved, but angular momentum only to the order of the method. First-order states with
-// the rates ż(q, v, z, t) use the midpoint rule, Δz = h ż(q̄, v̄, z̄, t̄).
+// With χ = 0, energy is conserved without damping, loads and drives. The linear momentum changes by the impulse of the
+// loads for every χ. The angular momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no
+// net moment. This condition holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of
+// `Continuum`, springs, and joints between points on their axes. With angles as coordinates, section frames
+// (`ElasticLine`) and joints of axes, energy is also conserved, but angular momentum only to the order of the method.
+// First-order states with the rates ż(q, v, z, t) use the midpoint rule, Δz = h ż(q̄, v̄, z̄, t̄).
 
 /// Step with the parameter χ, which conserves or dissipates energy. `State::a` and `State::lambda` after a step are
 /// values at the middle of the step. With χ = 0, λ alternates by O(h) about the reaction, and the mean over two steps
@@ -33,7 +35,7 @@ struct ConservingStep {
   /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< in order: q, v, v̇, λ, r, Φ, −(r, Φ), two corrections
+    VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< in order: q, v, v̇, λ, r, Φ, −(r, Φ/s), two corrections
     VecX other_vd, other_lambda;                  ///< result of the second attempt, during the third
     StepSecants secants;                          ///< mean forces and constraint Jacobian of the step
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
@@ -165,8 +167,8 @@ struct ConservingStep {
     for (Index i = 0; i < vd.size(); ++i) sum += (vd[i] - x.a[i]) * (vd[i] - x.a[i]);
     return h * h * sum;
   }
-  /// Restores the result of the second attempt, and returns true, if the third attempt `failed` or changes the
-  /// velocities by more than the second.
+  /// Restores the result of the second attempt, and returns true, if the third attempt `failed` or has a larger
+  /// `change` than the second.
   template <class Solver>
   static bool takes_other(State const& x, double h, Workspace<Solver>& w, bool failed) {
     if (!failed && change(x, h, w.vd) <= change(x, h, w.other_vd)) return false;
@@ -176,10 +178,10 @@ struct ConservingStep {
   }
 
   /// Performs one step from x. If Newton's method does not converge, the second attempt uses full Newton from zero
-  /// accelerations. The third attempt starts from the last accelerations and uses the exact tangent, as required near a
-  /// singular configuration. A step near a singular configuration has one solution on each branch. If the second
-  /// attempt changes the direction of the velocities, the third also runs, and the solution with the smaller change of
-  /// the velocities is accepted.
+  /// accelerations. Models with constraint equations have a third attempt. It starts from the last accelerations and
+  /// uses the exact tangent, as required near a singular configuration. A step near a singular configuration has one
+  /// solution on each branch. If `change` of the second attempt exceeds 0.01 ‖v₀‖², the third also runs, and the
+  /// solution with the smaller `change` is accepted.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0,
                      bool has_other = false) const {
@@ -245,7 +247,7 @@ struct EnergyMomentum {
   double tolerance = 1e-10;                       ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< options of Newton's method
 
-  /// \throws InvalidInput unless the tolerance is positive.
+  /// \throws InvalidInput unless the tolerance is positive and the options of `newton` are valid.
   void check() const {
     require_positive(tolerance, "EnergyMomentum: the tolerance");
     newton.check(name);
@@ -254,11 +256,12 @@ struct EnergyMomentum {
   ConservingStep method() const { return {name, 0.0, tolerance, newton}; }
 };
 
-/// Energy-decaying method, `ConservingStep` with χ = ½ (1 − ρ∞)/(1 + ρ∞): energy decreases in every step, in a linear
-/// mode by the factor ρ∞² as ωh → ∞. The method has order one for ρ∞ < 1. The dissipation by strains is that of the
-/// energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero 2001]. The dissipation by velocities uses the
-/// norm of M, so that every mode is damped; the angular momentum is then accurate to first order only. Force elements
-/// with a potential do not dissipate energy themselves: the dissipation by velocities damps their motion.
+/// Energy-decaying method, `ConservingStep` with χ = ½ (1 − ρ∞)/(1 + ρ∞): without loads, energy decreases in every step
+/// for ρ∞ < 1. The energy of a linear mode decreases by the factor ρ∞² as ωh → ∞. The method has order one for ρ∞ < 1.
+/// The dissipation by strains is that of the energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero
+/// 2001]. The dissipation by velocities uses the norm of M, so that every mode is damped; the angular momentum is then
+/// accurate to first order only. Force elements with a potential do not dissipate energy themselves: the dissipation by
+/// velocities damps their motion.
 struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;
@@ -269,7 +272,7 @@ struct EnergyDecaying {
   double tolerance = 1e-10;  ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< options of Newton's method
 
-  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
+  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1, the tolerance is positive, and the options of `newton` are valid.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
       throw InvalidInput("integrator.option", {ErrorObject{"EnergyDecaying"}, ": rho_inf must lie in [0, 1], but is ",

@@ -181,10 +181,10 @@ struct ErrorTolerance {
 ///   ‖e‖² = max_g ½ (mean over q in g of (e_q / tol(s_q))² + mean over v in g of (e_v / tol(s_v))²),
 ///   tol(s) = Atol + Rtol s + 4ε max_g |x|.
 /// A group g contains the unknowns of one kind of one body. The scales are the maxima before and after the step of
-///   lengths:    s_q the extent of the positions of the assembly, s_v the extent of its velocities, or the change of a
-///               velocity over the step;
-///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group, or the extent of the
-///               velocities of the assembly over its extent;
+///   lengths:    s_q the extent of the positions of the assembly, s_v the larger of the extent of its velocities and
+///               the change of a velocity over the step;
+///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the larger of the largest rate of the group and the ratio
+///               of the extents of the velocities and positions of the assembly;
 ///   others:     the largest entries of the group: gradients, deformations, sliders, coordinates of unknown unit.
 /// An assembly consists of bodies that joints and forces connect; markers on the ground are points of the assembly, at
 /// rest. Bodies without mutual forces therefore do not affect each other's scales. A common velocity, a common

@@ -30,7 +30,8 @@ struct ConstraintGain {
 };
 
 namespace detail {
-/// Part of a message that names the force element with a NaN, infinite or too large force; empty if there is none.
+/// Part of a message that names the first force element with a force that is NaN, infinite or above `largest_number`;
+/// empty if there is none.
 template <class = void>
 std::string whose_force(System const& s) {
   for (AppliedWrench<double> const& action : s.data().actions)
@@ -39,14 +40,14 @@ std::string whose_force(System const& s) {
         return sentence_of({" (force element \"", s.layout().forces[std::size_t(action.source)].name, "\")"});
   return "";
 }
-/// Sentence of a message that names a force element with a NaN, infinite or too large force as a possible cause; empty
-/// if there is none.
+/// Sentence of a message that names the force element of `whose_force` as a possible cause; empty if there is none.
 template <class = void>
 std::string and_whose_force(System const& s) {
   std::string const whose = whose_force(s);
   return whose.empty() ? "" : " A force is not finite or too large" + whose + '.';
 }
-/// \throws NonFiniteValue naming body, force element and time if an entry of x (nv) is NaN, infinite or too large.
+/// \throws NonFiniteValue naming body, force element and time if an entry of x (nv) is NaN, infinite or above
+/// `largest_number`.
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
@@ -55,7 +56,7 @@ void require_finite_force(System const& s, VecX const& x) {
         {"A force on ", ErrorObject{s.name_of(i)}, non_finite_suffix(x[i]), " at t = ", ErrorTime{s.at().t}, " s",
          whose_force(s), ". Check the forces applied to it (their markers may coincide) and the preceding state."});
 }
-/// \throws NonFiniteValue naming joint and time if an entry of x (rows) is NaN, infinite or too large.
+/// \throws NonFiniteValue naming joint and time if an entry of x (rows) is NaN, infinite or above `largest_number`.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
@@ -65,7 +66,7 @@ void require_finite_rows(System const& s, VecX const& x) {
                           " s. Check the state before this time, or take a smaller step.", and_whose_force(s)});
 }
 /// Checks the state of the last evaluation, before the matrix at this state is reported as singular. \throws
-/// NonFiniteValue if a coordinate or velocity is NaN, infinite or too large.
+/// NonFiniteValue if a coordinate or velocity is NaN, infinite or above `largest_number`.
 template <class = void>
 void require_finite_place(System const& s) {
   auto const& [q, v, t] = s.at();
@@ -78,8 +79,8 @@ void require_finite_place(System const& s) {
        " s. Check the forces on it, or take a smaller step.", and_whose_force(s)});
 }
 /// Reports that the equations at the last evaluation, with right-hand side `rhs`, have no finite solution. The message
-/// names an entry of the state or of `rhs` that is NaN, infinite or too large. Otherwise the matrix is singular, and
-/// the message names `who`, the owner of the first missing pivot.
+/// names an entry of the state or of `rhs` that is NaN, infinite or above `largest_number`. Otherwise the matrix is
+/// singular, and the message names `who`, the owner of the first missing pivot.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
   double const t = s.at().t;
@@ -207,7 +208,7 @@ class ForwardDynamics {
   }
 
   /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at a configuration with the gain
-  /// `usual`.
+  /// `usual` (`ConstraintGain::far_above`), or if the matrix at `there` is singular.
   bool is_singular(System& system, At<double> const& there, ConstraintGain const& usual) {
     try {
       return constraint_gain(system, there.q, there.v, there.t).far_above(usual);
@@ -215,7 +216,8 @@ class ForwardDynamics {
       return true;
     }
   }
-  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at `here`.
+  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at `here`
+  /// (`ConstraintGain::far_above`), or if the matrix at one of them is singular.
   bool loses_rank(System& system, At<double> const& here, At<double> const& there) {
     try {
       return is_singular(system, there, constraint_gain(system, here.q, here.v, here.t));
@@ -259,8 +261,8 @@ class ForwardDynamics {
   }
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
   std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
-  /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
-  /// a small pivot, or `note_doubt` was called.
+  /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped more equations or found
+  /// a relative pivot of at most 1e-3 (`BlockFactor::is_doubtful`), or `note_doubt` was called.
   bool is_doubtful() const { return doubtful_ || solver_->is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
@@ -282,8 +284,8 @@ class ForwardDynamics {
   }
 
  private:
-  /// Computes the accelerations by the articulated-body algorithm. Returns false if they are not finite; the equations
-  /// of the full model then identify the reason.
+  /// Computes the accelerations by the articulated-body algorithm. Returns false if a pivot is missing or if they are
+  /// not finite; the equations of the full model then identify the reason.
   bool accelerations_of_tree(System& system, At<double> const& at, VecX& a) {
     Coordinates const& c = system.step_coordinates();
     VecX const* residual = nullptr;

@@ -22,8 +22,8 @@ namespace polybody::detail {
 /// entries of Ω of these bodies.
 class FreeRotations {
  public:
-  /// Reads J from the mass matrix. Bodies with a singular J are omitted. If the steps of the system have other
-  /// coordinates, all bodies are omitted.
+  /// Reads J from the mass matrix. Bodies with a singular J or a variable mass are omitted. If policies eliminate
+  /// coordinates of the model, all bodies are omitted.
   template <class = void>
   [[gnu::cold]] explicit FreeRotations(System& system) {
     if (system.step_coordinates()) return;
@@ -58,8 +58,8 @@ class FreeRotations {
   void subtract_gyroscopic(VecX const& v, VecX& a) const {
     for (Body const& b : bodies_) put(b, at(b, a) - gyroscopic(b, at(b, v)), a);
   }
-  /// Replaces h Ω in `moved` (velocities times h) by the rotation vectors θ. \throws NewtonConvergenceFailure for a
-  /// body that rotates too far in the step to t [s].
+  /// Replaces h Ω in `moved` (velocities times h) by the rotation vectors θ. \throws NewtonConvergenceFailure if θ does
+  /// not converge or exceeds 3 rad in the step to t [s].
   void find_rotations(System const& system, double t, VecX& moved) const {
     for (Body const& b : bodies_) {
       Vec3 const turn = at(b, moved);
@@ -129,11 +129,11 @@ class FreeRotations {
     return false;
   }
   [[noreturn, gnu::cold]] static void refuse(System const& system, Body const& b, Vec3 const& turn, double t) {
-    throw NewtonConvergenceFailure("rotation.not_converged",
-                                   {"The rotation of ", ErrorObject{system.name_of(b.v)}, " in the step to t = ",
-                                    ErrorTime{t}, " s does not converge: the angular velocity times the step is ",
-                                    ErrorValue{std::sqrt(squared_norm<double>(turn))}, " rad, but the limit is ",
-                                    farthest, " rad. Take a smaller step."});
+    throw NewtonConvergenceFailure(
+        "rotation.not_converged",
+        {"The rotation of ", ErrorObject{system.name_of(b.v)}, " in the step to t = ", ErrorTime{t},
+         " s does not converge, or exceeds ", farthest, " rad: the angular velocity times the step is ",
+         ErrorValue{std::sqrt(squared_norm<double>(turn))}, " rad. Take a smaller step."});
   }
 
   Sequence<Body> bodies_;

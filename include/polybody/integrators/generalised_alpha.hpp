@@ -16,9 +16,9 @@ struct GeneralisedAlpha {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  /// Spectral radius at infinity, in [0, 1]: 1 conserves energy, 0 damps most. With constraint equations, use a value
-  /// below 1 (0.99 is sufficient). At 1 the multipliers are only marginally stable: they alternate in sign and grow
-  /// over some thousand steps.
+  /// Spectral radius at infinity, in [0, 1]: 1 conserves the energy of linear models, 0 damps most. With constraint
+  /// equations, use a value below 1 (0.99 is sufficient). At 1 the multipliers are only marginally stable: they
+  /// alternate in sign and grow over some thousand steps.
   double rho_inf = 0.8;
   /// Tolerance of Newton's corrections, relative to the accelerations. At 1e-5 the remaining error of a smooth motion
   /// is far below the error of a step of ωh = 0.1, and a step needs two iterations fewer. Near singular configurations,
@@ -30,7 +30,7 @@ struct GeneralisedAlpha {
   /// True to satisfy also Φ̇ = 0, at the cost of one factorisation of [M, Gᵀ; G, 0] per step.
   bool stabilised = false;
 
-  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
+  /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1, the tolerance is positive, and the options of `newton` are valid.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
       throw InvalidInput("integrator.option", {ErrorObject{"GeneralisedAlpha"}, ": rho_inf must lie in [0, 1], but is ",
@@ -63,7 +63,7 @@ struct HhtAlpha {
   bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
-  /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.
+  /// \throws InvalidInput unless −1/3 ≤ α ≤ 0, the tolerance is positive, and the options of `newton` are valid.
   void check() const {
     if (!(alpha >= -1.0 / 3.0 && alpha <= 0.0))
       throw InvalidInput("integrator.option",
@@ -94,7 +94,7 @@ struct Newmark {
   bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
-  /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
+  /// \throws InvalidInput unless γ ≥ ½, β > 0, the tolerance is positive, and the options of `newton` are valid.
   void check() const {
     if (!(gamma >= 0.5) || !std::isfinite(gamma))
       throw InvalidInput("integrator.option", {ErrorObject{"Newmark"}, ": gamma must be at least 1/2, but is ",
@@ -124,7 +124,7 @@ struct Trapezoidal {
   bool second_order_terms = false;  ///< true: ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q in every tangent; false: only after failed steps
   bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
-  /// \throws InvalidInput unless the tolerance is positive.
+  /// \throws InvalidInput unless the tolerance is positive and the options of `newton` are valid.
   void check() const {
     require_positive(tolerance, "Trapezoidal: the tolerance");
     newton.check(name);

@@ -7,7 +7,7 @@
 
 namespace polybody {
 
-/// Cost of attempts at a step that failed.
+/// Cost of failed attempts at a step.
 struct AttemptCost {
   int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
 };
@@ -16,15 +16,15 @@ struct AttemptCost {
 struct StepReport {
   double taken = 0.0;        ///< length of the step [s]
   double next = 0.0;         ///< suggested length of the next step [s]
-  int iterations = 0;        ///< Newton iterations; 0 for an explicit step
+  int iterations = 0;        ///< Newton iterations, or corrections of positions in `Rattle`; otherwise 0
   int factorisations = 0;    ///< factorisations of the tangent or the mass matrix
   int evaluations = 0;       ///< evaluations of the forces
   int rejected = 0;          ///< trial steps that the step control rejected, and halved steps
   int halved = 0;            ///< failed steps that were repeated as two halves (`RunOptions::max_step_halvings`)
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
-  long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< last correction over its tolerance if the iteration budget ended the step, else 0
+  long choices = 0;          ///< selections of independent coordinates in `RungeKutta4` and `AdamsBashforthMoulton`
+  double left = 0.0;         ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {
@@ -61,7 +61,7 @@ auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
   }
 }
 /// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
-/// or too large.
+/// or above `largest_number`.
 template <class = void>
 void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;

@@ -21,25 +21,27 @@ inline double rounding_of(VecX const& q) {
 /// Round-off of a correction y that changes q by s y.
 inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }
 
-/// Sets out to x, perturbed by a few units of the round-off of `q`. The signs are irregular, so that they match no
+/// Sets out to x, with each entry changed by ±4 `rounding_of(q)`. The signs are irregular, so that they match no
 /// pattern of a model. x and out may be the same vector.
 inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + scattered_sign(i) * size;
 }
-/// True if a correction may be round-off. Near a singular configuration, the inverse of the constraint Jacobian
-/// amplifies the round-off ε to √ε times some powers of ten. A diverged iterate has a large tolerance, but changes the
-/// coordinates by metres, and is thus excluded. \param moved root mean square change of the coordinates
+/// True if a correction may be round-off, because `moved` is at most 1e10 `rounding_of(q)`. Near a singular
+/// configuration, the inverse of the constraint Jacobian amplifies the round-off ε to √ε times some powers of ten. A
+/// diverged iterate has a large tolerance, but changes the coordinates by metres, and is thus excluded. \param moved
+/// root mean square change of the coordinates
 inline bool may_be_rounding(double moved, VecX const& q) { return moved <= 1e10 * rounding_of(q); }
-/// Overload for a step from q: the violation phi of the position constraints must also be within round-off.
+/// Overload for a step from q: the largest violation in phi must also be at most 1e3 `rounding_of(q)`.
 inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
   return largest_size(phi) <= 1e3 * rounding_of(q) && may_be_rounding(moved, q);
 }
 
-/// True if the correction y with the norm `norm` consists of round-off: it changes if coordinates and constraint
-/// functions change by a few units of round-off. Near a singular configuration, the inverse of the constraint Jacobian
-/// amplifies round-off many times. Light nodes amplify the round-off of strains in the same way. \param moved computes
-/// the perturbed correction in y and returns true if this correction is finite \param measure returns the norm of y
+/// True if the correction y with the norm `norm` consists of round-off: it changes by at least half of `norm` if
+/// coordinates and constraint functions change by a few units of round-off. Near a singular configuration, the inverse
+/// of the constraint Jacobian amplifies round-off many times. Light nodes amplify the round-off of strains in the same
+/// way. \param moved computes the perturbed correction in y and returns true if this correction is finite \param
+/// measure returns the norm of y
 /// \param kept workspace; y is unchanged afterwards
 template <class Moved, class Measure>
 bool is_round_off(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
@@ -111,9 +113,9 @@ template <class = void>
   return "";
 }
 
-/// Part of a message with a remedy for a bar whose elements resist stretch far more than bending. A small rotation of
-/// an element then causes a large axial force, and Newton's method follows this force instead of the motion. Empty if
-/// the model has no such bar.
+/// Part of a message with a remedy for a bar whose elements resist stretch far more than bending: EA > 1e8 EI/l², with
+/// the length l of an element. A small rotation of an element then causes a large axial force, and Newton's method
+/// follows this force instead of the motion. Empty if the model has no such bar.
 template <class = void>
 [[gnu::cold]] std::string remedy_of_stretch(System const& system) {
   for (BodyLayout const& body : system.layout().bodies)

@@ -58,8 +58,8 @@ namespace polybody {
 struct RadauDerivatives;  // gradients/radau_derivatives.hpp
 
 /// Reference integrator for few, accurate steps, also of stiff models. The matrix of a step has three times the
-/// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. Above 64 unknowns,
-/// `AutoLu` allocates memory in a step.
+/// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. If the matrix has more
+/// than 64 unknowns, `AutoLu` allocates memory in a step.
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
@@ -206,8 +206,8 @@ struct Radau {
     StepReport tried;
     double reach = h;  // length of the stages [s]
     bool stages_lose_rank = false;
-    // repetitions: full Newton; then a matrix for each stage, with stages over h or 1.25 h, then over the other length;
-    // without constraint equations only over h
+    // Repetition 1: full Newton. Repetition 2: a matrix for each stage, with stages over h, or over 1.25 h if they lose
+    // rank over h. Repetition 3, only with constraint equations: with stages over 1.25 h instead of h, or vice versa.
     for (int effort = 0, last = system.rows() > 0 ? 3 : 2;; ++effort) {
       bool const careful = effort > 0;
       if (effort == 2) stages_lose_rank = loses_rank(system, x, h, w);
@@ -326,8 +326,8 @@ struct Radau {
       }
       return all_finite(w.rhs);
     }
-    /// Writes the matrix with each block row evaluated at its own stage. Near a singular configuration, G differs as
-    /// much between two stages as from a matrix of lower rank.
+    /// Writes the matrix with each block row evaluated at its own stage. Near a singular configuration, the change of G
+    /// between two stages is as large as its distance from a matrix of lower rank.
     void write_by_stage(BlockSink& sink) {
       for (int i = 0; i < 3; ++i) {
         auto const k = std::size_t(i);

@@ -22,8 +22,8 @@ struct ClassicalTableau {
   static constexpr Row b{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
 };
 
-/// Coefficients c_i, a_ij and b_j of order five, with the weights of the error [Dormand & Prince 1980]. The seventh
-/// stage is evaluated at the result and contributes to the error only.
+/// Coefficients c_i, a_ij and b_j of the method of order five, with the weights of the error [Dormand & Prince 1980].
+/// The seventh stage is evaluated at the result and contributes to the error only.
 struct DormandPrinceTableau {
   static constexpr int stages = 6;  ///< number of stages in the result
   using Row = std::array<double, 7>;
@@ -202,7 +202,8 @@ struct DormandPrince {
     w.start(system, x, stabilisation);
   }
 
-  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached.
+  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached if the
+  /// tolerance requires a step below `min_step`.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     StepReport report;

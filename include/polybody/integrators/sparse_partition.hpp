@@ -9,13 +9,13 @@
 
 namespace polybody {
 
-/// Partition as in `PartitionedConstraints`, for large systems: constraint equations G b = r (m×n) of rank k, with b_d
-/// = G_d⁻¹ r for b_i = 0. The first partition results from rank-revealing sparse QR factorisations: of G for the
-/// columns, and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the
-/// limit, its column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry.
-/// Exchanges continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The
-/// factorisation of G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M,
-/// Gᵀ; G, 0]. T is `double`; a program that does not use this template does not compile it.
+/// Partition as in `PartitionedConstraints`, for sparse G: constraint equations G b = r (m×n) of rank k, with b_d =
+/// G_d⁻¹ r for b_i = 0. The first partition results from rank-revealing sparse QR factorisations: of G for the columns,
+/// and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the limit, its
+/// column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry. Exchanges
+/// continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The factorisation of
+/// G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M, Gᵀ; G, 0]. T is
+/// `double`; a program that does not use this template does not compile it.
 template <class T = double>
 class SparsePartitionOf {
  public:
@@ -31,7 +31,7 @@ class SparsePartitionOf {
   Index rank() const { return Index(dependents_.size()); }  ///< k, number of dependent columns
   /// True if the column is dependent in the present partition; false before the first partition.
   bool is_dependent(Index column) const { return chosen_ && place_[std::size_t(column)] >= 0; }
-  /// Largest entry of G at the last renewal; zero before the first one.
+  /// Largest magnitude of an entry of G at the last renewal; zero before the first one.
   T largest_entry() const { return largest_entry_; }
   bool has_factors() const { return factored_; }  ///< true if G_d has been factorised since the last `forget`
   /// Discards the partition: the next renewal selects a new one.
@@ -49,7 +49,7 @@ class SparsePartitionOf {
   void mark_redundant(Index row) { left_out_[std::size_t(row)] = true; }
 
   /// Factorises G_d of the entries added since `begin`, and changes the partition if necessary. \param limit largest
-  /// permitted |R|
+  /// permitted |R| \throws SingularMatrix if the factorisation fails
   void renew(T limit) {
     g_.setFromTriplets(entries_.begin(), entries_.end());
     largest_entry_ = largest(g_);
@@ -87,8 +87,8 @@ class SparsePartitionOf {
   }
 
   /// Indices of linearly independent columns of g. A factorisation selects each column whose pivot exceeds a threshold,
-  /// in an order that keeps the factors sparse. The highest threshold with the full number of columns is used, to avoid
-  /// nearly dependent columns.
+  /// in an order that keeps the factors sparse. Of the thresholds 0.1, 0.01, …, the highest one that selects as many
+  /// columns as `redundant_below` is used, to avoid nearly dependent columns.
   static Sequence<Index> independent_columns(Matrix g) {
     T const most = largest(g);
     if (most == 0.0) return {};  // no entries, or all are zero

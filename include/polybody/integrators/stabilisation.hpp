@@ -49,8 +49,8 @@ struct NoStabilisation : NoCorrection {
   static constexpr bool accepts_constraints = true;
 };
 
-/// Baumgarte stabilisation: the accelerations satisfy Φ̈ + 2α Φ̇ + β² Φ = 0. With α = β, a violation decays as e^{−αt}
-/// [Baumgarte 1972]. The violation is damped but not removed, and the step must resolve 1/α.
+/// Baumgarte stabilisation: the accelerations satisfy Φ̈ + 2α Φ̇ + β² Φ = 0. With α = β, a violation decays as (c₁ + c₂
+/// t) e^{−αt} [Baumgarte 1972]. The violation is damped but not removed, and the step must resolve 1/α.
 struct Baumgarte {
   static constexpr bool accepts_constraints = true;
   using Scratch = NoCorrection::Scratch;  ///< empty

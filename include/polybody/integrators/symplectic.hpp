@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Explicit methods with bounded energy error. They are symplectic if coordinates form a vector space, the mass is
-/// constant and forces depend on positions only (planar rigid bodies, cables, springs). Rigid bodies in space rotate by
-/// `FreeRotations`: reversible in time, with the energy of a free rotation conserved. Other bodies that rotate in
-/// space, and damped forces, are integrated with the same order, but without a bound of the energy error.
+/// Explicit methods with bounded energy error: `SymplecticEuler` and `Rattle`. They are symplectic if coordinates form
+/// a vector space, the mass is constant and forces depend on positions only (planar rigid bodies, cables, springs).
+/// Rigid bodies in space rotate by `FreeRotations`: reversible in time, with the energy of a free rotation conserved.
+/// Other bodies that rotate in space, and damped forces, are integrated with the same order, but without a bound of the
+/// energy error.
 
 #include <polybody/integrators/free_rotations.hpp>
 
@@ -60,7 +61,8 @@ struct Rattle {
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   double tolerance = 1e-12;  ///< tolerance of Φ, relative to 1 + max |q|
-  int max_iterations = 50;   ///< limit of iterations; each multiplies Φ by about ωh, with the angular frequency ω
+  /// Limit of iterations. Each iteration multiplies Φ by about ωh, with the angular frequency ω of the motion.
+  int max_iterations = 50;
 
   /// Memory of a step, allocated once.
   template <class Solver>

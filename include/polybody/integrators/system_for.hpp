@@ -38,10 +38,11 @@ System system_for(M const&& model) = delete;
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const& model) {
   static_assert(ConstraintCompatible<I, M>,
-                "This explicit integrator has no stabilisation, but joints with the Constraint policy add constraint "
-                "equations. Use it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
+                "This explicit integrator has no stabilisation, but the Constraint policy and Euler parameters add "
+                "constraint equations. Use an integrator with Projection, such as RungeKutta4<Projection>, or an "
+                "implicit integrator.");
   static_assert(ConstantMassCompatible<I, M>,
-                "This integrator needs bodies with a constant mass matrix. Use RungeKutta4.");
+                "This integrator needs bodies with a constant mass matrix and no joint coordinates. Use RungeKutta4.");
   static_assert(ArticulatedBodySolvable<M>,
                 "joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states. Use "
                 "joint_coordinates::Augmented.");
@@ -51,21 +52,23 @@ System system_for(M const& model) {
   if constexpr (contains(entries_of<I>(), Capabilities::secants)) {
     using CompatibilityReport = SecantSupport<M>;
     static_assert(FullStateModel<M>,
-                  "EnergyMomentum does not support policies that eliminate coordinates, such as AncfLinear and "
-                  "JointCoordinates. Use Constraint.");
-    static_assert(CompatibilityReport::bodies,
-                  "EnergyMomentum needs bodies with a constant mass matrix and a mean force over a step: cables, ANCF "
-                  "beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
+                  "EnergyMomentum and EnergyDecaying do not support policies that eliminate coordinates, such as "
+                  "AncfLinear and JointCoordinates. Use Constraint.");
     static_assert(
-        CompatibilityReport::policies || !FullStateModel<M>,
-        "EnergyMomentum supports the policies Constraint, Penalty and Bushing. Use GeneralisedAlpha for others.");
-    static_assert(
-        CompatibilityReport::positions,
-        "EnergyMomentum does not support nonholonomic joints (RollingDisc, KnifeEdge). Use GeneralisedAlpha.");
-    static_assert(CompatibilityReport::elements, "EnergyMomentum does not support force groups. Use GeneralisedAlpha.");
+        CompatibilityReport::bodies,
+        "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step: "
+        "cables, ANCF beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
+    static_assert(CompatibilityReport::policies || !FullStateModel<M>,
+                  "EnergyMomentum and EnergyDecaying support the policies Constraint, Penalty and Bushing. Use "
+                  "GeneralisedAlpha for others.");
+    static_assert(CompatibilityReport::positions,
+                  "EnergyMomentum and EnergyDecaying do not support nonholonomic joints (RollingDisc, KnifeEdge). Use "
+                  "GeneralisedAlpha.");
+    static_assert(CompatibilityReport::elements,
+                  "EnergyMomentum and EnergyDecaying do not support force groups. Use GeneralisedAlpha.");
     static_assert(CompatibilityReport::potentials,
-                  "EnergyMomentum needs the potential of a force for general scalars: declare potential(frames, t) as "
-                  "a template on the scalar type of the frames.");
+                  "EnergyMomentum and EnergyDecaying need the potential of a force for general scalars: declare "
+                  "potential(frames, t) as a template on the scalar type of the frames.");
   }
   if constexpr (CompatibleIntegrator<I, M>) return stepped_system(model, with < entries_of<I>() | more >);
 }

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Linear solver of statics, `AutoLu`: dense up to 64 unknowns, sparse above.
+
 #include <span>
 
 #include <polybody/math/sequence.hpp>

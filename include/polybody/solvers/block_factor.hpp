@@ -8,9 +8,9 @@
 /// diagonal block and W its blocks with later nodes. Its blocks below D are stored transposed, as Lt. D is factorised
 /// as L Δ R, with pivots Δ and unit triangular L and R. Elimination computes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −=
 /// Lt_kᵀ W_l for the blocks C of all later nodes k, l. In a symmetric matrix Lt = Δ⁻¹ W, and only blocks with l ≥ k are
-/// computed. Afterwards small nodes store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the original blocks. In a
-/// solution no node then waits for the triangular solve of another one. If D is nearly singular, sums of products with
-/// these multipliers would cancel. Such a node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
+/// computed. Afterwards nodes of at most six unknowns store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the
+/// original blocks. In a solution no node then waits for the triangular solve of another one. If D is nearly singular,
+/// sums of products with these multipliers would cancel. Such a node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
 
 #include <algorithm>
 #include <cmath>
@@ -28,15 +28,15 @@ namespace polybody {
 enum class Symmetry {
   assumed,   ///< only the upper half is read
   none,      ///< both halves are read
-  measured,  ///< both halves are read; if they agree, only the upper half is computed
+  measured,  ///< both halves are read; if they agree up to 1e-12 of the norm, only the upper half is computed
 };
 
 /// Block factorisation of a saddle-point matrix; `BlockLdlt`, `BlockLu` and `BlockSolver` are its three variants.
 template <Symmetry symmetry>
 class BlockFactor {
  public:
-  /// Least ratio of a pivot of a body, or of a joint, to the sum of the magnitudes of its terms. Smaller pivots count
-  /// as zero.
+  /// Least ratio of a pivot to the sum of the magnitudes of its terms, for bodies (`body_threshold`) and for joints
+  /// (`row_threshold`). Smaller pivots count as zero.
   static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< ratios, pivot to sum of terms
   /// Up to this number of unknowns, one dense block with pivoting is used if changes of the elimination order fail.
   static constexpr Index dense_limit = 64;

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Operations of a block factorisation at one node. The number N of unknowns is a constant for small nodes; N = 0 if
-/// the number is known only at run time. The rows of the node are U = [D | W], its columns Lt; see `BlockFactor`.
+/// Operations of a block factorisation at one node. The number N of unknowns is a constant for nodes of at most six
+/// unknowns; N = 0 if the number is known only at run time. The rows of the node are U = [D | W], its columns Lt; see
+/// `BlockFactor`.
 
 #include <algorithm>
 
@@ -15,7 +16,7 @@ struct NodeStorage {
   double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or memory for Δ⁻¹ W
   double* f;             ///< factors of L, by rows (size × size)
   double* inverse;       ///< inverses of the pivots (size)
-  char* direct;          ///< size, or 0 if no multipliers are stored: the node is large, pivoted or nearly singular
+  char* direct;          ///< size; 0 without multipliers: more than six unknowns, pivoted or nearly singular
   int stride() const { return pad + width; }
 };
 

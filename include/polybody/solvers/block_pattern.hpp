@@ -79,7 +79,8 @@ class BlockPattern {
     }
   }
 
-  /// Divides bodies with more than `largest_segment` unknowns into the least number of equal parts.
+  /// Divides each segment of a body with more than `largest_segment` unknowns into the least number of parts, which
+  /// differ in size by at most one.
   [[gnu::cold]] static void divide(std::span<Block const> blocks, Sequence<char>& begins) {
     Index const size = Index(begins.size()) - 1;
     Sequence<char> diagonal(begins.size(), 0);

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Linear solver `DenseLu`: LU factorisation of a dense matrix.
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>

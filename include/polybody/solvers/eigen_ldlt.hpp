@@ -18,9 +18,9 @@ namespace polybody {
 
 /// Eigen's sparse LDLᵀ factorisation (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0. Rows without a
 /// diagonal block get the diagonal entry −ε. The matrix is then quasi-definite and has a factorisation in any order
-/// [Vanderbei 1995]. Iterative refinement with the matrix itself removes the error due to ε and to slight asymmetry
-/// (gyroscopic terms, damping of rotating bodies). If refinement does not contract, BiCGSTAB solves the equations with
-/// the factors as preconditioner [van der Vorst 1992].
+/// [Vanderbei 1995]. Iterative refinement with the matrix itself removes the error due to ε and to an asymmetry up to
+/// `largest_asymmetry` (gyroscopic terms, damping of rotating bodies). If refinement does not contract, BiCGSTAB solves
+/// the equations with the factors as preconditioner [van der Vorst 1992].
 class EigenLdlt {
  public:
   static constexpr double shift = 1e-9;  ///< ratio of ε to g²/a, where g and a are the largest entries of G and A
@@ -127,8 +127,9 @@ class EigenLdlt {
     double const off = (a - t).norm(), size = a.norm();
     if (off > largest_asymmetry * size)
       throw InvalidInput("solver.not_symmetric",
-                         {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric (relative asymmetry ",
-                          ErrorValue{off / size}, "). Use EigenSparseLu or the default BlockSolver."});
+                         {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric: the relative asymmetry is ",
+                          ErrorValue{off / size}, ", but the limit is ", largest_asymmetry,
+                          ". Use EigenSparseLu or the default BlockSolver."});
   }
   /// First unknown with a pivot not above `threshold` times the largest entry of its column; −1 if there is none.
   Index first_bad(double threshold) const {

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Linear solver `EigenSparseLu` with Eigen's sparse LU factorisation.
+
 #include <Eigen/SparseLU>
 #include <memory>
 #include <span>
@@ -8,8 +11,8 @@
 
 namespace polybody {
 
-/// Eigen's sparse LU factorisation. The pattern is analysed once, and blocks are added through an index table, without
-/// search. Eigen itself allocates memory in `factor`. \tparam Ordering an ordering method of Eigen
+/// Eigen's sparse LU factorisation. The pattern is analysed once, and blocks are added without search, by an index
+/// table. Eigen itself allocates memory in `factor`. \tparam Ordering an ordering method of Eigen
 template <class Ordering>
 class EigenSparseLuBy {
  public:

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Wrapper of linear solvers that adds one step of iterative refinement to each solution.
+
 #include <span>
 
 #include <polybody/math/sequence.hpp>

@@ -114,7 +114,8 @@ struct NewtonProgress {
     return saved * std::max(reused.served, 1) > options.factorisation_cost;
   }
 
-  /// True if the corrections shrink too slowly or grow. They may then consist of round-off.
+  /// True if the corrections may consist of round-off: `shrinks` is false, or a correction of at most 1e4 times its
+  /// tolerance grows or is the second one in succession above half of its predecessor.
   bool stagnates(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
@@ -168,7 +169,8 @@ struct NewtonSolve {
     follows = false;
     return reused.usable = renewed = true;
   }
-  /// Returns to the first iterate if corrections with the factorisation of an earlier solve were too large.
+  /// Returns to the first iterate if a correction with the factorisation of an earlier solve was too large
+  /// (`is_far_from_solution`).
   bool restart() {
     if constexpr (requires { problem.restart(); }) {
       restarted = report.factorisations == 0 && problem.is_far_from_solution(progress.largest);
@@ -179,8 +181,8 @@ struct NewtonSolve {
     }
     return restarted;
   }
-  /// True if a correction of this norm is small compared with the motion during the step, or with the largest
-  /// correction.
+  /// True if `is_far_from_solution` of the problem is false for 100 times this norm. If the problem has no such
+  /// function: true if the norm is at most a hundredth of the largest one.
   bool is_near(double norm) const {
     if constexpr (requires { problem.is_far_from_solution(norm); })
       return !problem.is_far_from_solution(100.0 * norm);
@@ -318,11 +320,12 @@ struct NewtonSolve {
 ///
 /// Factorisation: the tangent is factorised again if corrections grow, or if this saves more iterations than it costs
 /// (`NewtonOptions`). The correction that causes the new factorisation is discarded. A correction with the new
-/// factorisation, for the same iterate and right-hand side, replaces it. If corrections with the factorisation of an
-/// earlier solve are too large, the solve restarts at its first iterate with a new factorisation. From a distant
-/// iterate the solve may converge to another solution, in which for example a rod has turned over. If the second
-/// correction of a solve requires a new factorisation, the next solves begin with one, until their second corrections
-/// are small again.
+/// factorisation, for the same iterate and right-hand side, replaces it. If a correction with the factorisation of an
+/// earlier solve is too large (`is_far_from_solution`), the solve restarts at its first iterate with a new
+/// factorisation. From a distant iterate the solve may converge to another solution, in which for example a rod has
+/// turned over. If the second correction of a solve requires a new factorisation and has a rate above 0.5, the next
+/// solves begin with one. This ends when the rate of a second correction is at most twice the expected rate of a new
+/// factorisation.
 ///
 /// Stop: with ‖Δ‖ relative to its tolerance, the solve stops if θ/(1 − θ) ‖Δ‖ ≤ 1 or ‖Δ‖ ≤ 0.1. With a new
 /// factorisation the first condition also requires that no correction of the solve grew. After a large correction θ is

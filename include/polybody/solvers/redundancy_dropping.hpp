@@ -18,11 +18,12 @@ concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
 };
 
 /// Linear solver for [A, Gᵀ; G, 0] that uses `Solver` and also accepts redundant constraint equations. It drops
-/// redundant equations, so that their multipliers are zero. `BlockSolver` determines the redundant equations. This
-/// solver factorises the matrix if `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver` provides it),
-/// and in every later factorisation as long as equations are dropped. `Solver` then factorises the matrix, in which a
-/// one on the diagonal replaces the row and the column of each dropped equation. If this fails (`EigenLdlt` for thin
-/// rods, whose M is singular), `BlockSolver` solves the equations. The wrapper stores a copy of the blocks.
+/// redundant equations, so that their multipliers are zero. `BlockSolver` determines the redundant equations. For this
+/// purpose `BlockSolver` factorises the matrix if `Solver` finds no pivot or a weak pivot (`least_pivot`, if `Solver`
+/// provides it), and in every later factorisation as long as equations are dropped. `Solver` then factorises the
+/// matrix, in which a one on the diagonal replaces the row and the column of each dropped equation. If this fails
+/// (`EigenLdlt` for thin rods, whose M is singular), `BlockSolver` solves the equations. The wrapper stores a copy of
+/// the blocks.
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:

@@ -28,6 +28,7 @@ class LinearEquations {
   virtual ~LinearEquations() = default;
 
   /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
+  /// \throws InvalidInput for several copies in a model with `joint_coordinates::ArticulatedBody`
   virtual void analyse(System& system, Index copies, BlockWriter const& write) = 0;
   /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1 on success,
   /// otherwise the index of an equation without a pivot, for `name_of_equation`.
@@ -45,8 +46,8 @@ class LinearEquations {
   /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
   /// articulated-body algorithm, and for solvers without `mark_redundant`.
   virtual void mark_redundant(std::span<Index const> equations) = 0;
-  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
-  /// joints: see `BlockFactor::is_doubtful`.
+  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has relative pivots of at
+  /// most 1e-3 in closing joints: see `BlockFactor::is_doubtful`.
   virtual bool is_doubtful() const = 0;
   /// Computes the null vectors of the dropped equations, in the unknowns of the linear equations
   /// (`BlockFactor::null_vectors`). Empty if the linear solver does not provide null vectors. \param sizes

@@ -150,17 +150,18 @@ class PathEquations {
 }  // namespace detail
 
 /// Follows a path of static equilibria past limit points by the arc-length method [Riks 1979; Crisfield 1991, §9.3].
-/// The path begins at `start`, which is in equilibrium without loads. It ends if `done(point)` is true or
-/// `options.points` points are computed. The arc length ds is defined by ds² = |dq|²/c² + dp² with c = |dq/dp| at the
-/// start of the path.
+/// The path begins at `start`, which is in equilibrium without loads and not part of the result. It ends if
+/// `done(point)` is true or `options.points` points are computed. The arc length ds is defined by ds² = |dq|²/c² + dp²
+/// with c = |dq/dp| at the start of the path.
 ///
 /// The load factor p is an unknown, and the residual r(q, λ, p) is affine in it. Corrections (Δ, Δp) are in the plane
 /// orthogonal to the tangent (t, t_p) at the start of the step:
 ///   K Δ = −r − r_p Δp,  a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
 /// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
 /// minimum norm.
-/// \throws NewtonConvergenceFailure naming the load factor if the steps become too short, SingularMatrix if the path
-/// has no tangent at the start, NonFiniteValue.
+/// \throws NewtonConvergenceFailure naming the load factor if a step would be shorter than `min_step`, SingularMatrix
+/// if the path has no tangent at the start, NonFiniteValue, InvalidInput for invalid options or a state that does not
+/// fit the model.
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Static equilibrium by Newton's method with load steps.
+/// Static equilibrium by Newton's method with load steps, or by a damped motion if Newton's method does not converge.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/state_checks.hpp>
@@ -54,8 +54,8 @@ struct DampedStep {
   }
 };
 
-/// Displaces an unstable equilibrium by 1e-3 (1 + max |q|) along a motion of negative stiffness. Returns false for a
-/// stable equilibrium.
+/// Displaces an unstable equilibrium by 1e-3 (1 + max |q|) along a motion of negative stiffness. Returns false if no
+/// motion of negative stiffness is found.
 template <class Solver>
 [[gnu::cold]] bool leaves_saddle(EquilibriumPath<Solver>& path) {
   path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
@@ -129,7 +129,7 @@ template <class Solver>
 }
 
 /// Adds the number of negative pivots of the stiffness in the present state to the report, with a warning if there are
-/// any. The number is −1 for a model with first-order states.
+/// any. The number is −1 for a model with first-order states, and if the matrix is too large.
 template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;
@@ -154,7 +154,7 @@ namespace polybody {
 
 namespace detail {
 /// Computes initial multipliers by forward dynamics in state x. A pendulum, for example, has no stiffness without
-/// multipliers. Returns false if the accelerations are not unique.
+/// multipliers. Returns false if they cannot be computed, for example because the accelerations are not unique.
 template <class = void>
 bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;
@@ -166,8 +166,8 @@ bool multipliers_at_rest(System& system, State& x) {
   return true;
 }
 
-/// Follows the path from the present state to its end. Returns the result of the last Newton iteration. `path.trial`
-/// is then the last equilibrium.
+/// Follows the path from the present state to its end. Returns `converged` at the end, otherwise the reason why the
+/// path ends earlier. `path.trial` is then the last equilibrium.
 template <class Solver>
 NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
   LoadSteps steps(options);
@@ -203,7 +203,7 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
 
 /// Follows the path again from `start`, by minimum-norm corrections. Returns true if the path ends in equilibrium. The
 /// last corrections use the tangent at the end of the path; the report names the motions and constraints to which
-/// springs were added.
+/// springs were added. \throws InconsistentInitialConditions for redundant constraints that contradict others.
 template <class Solver>
 bool follow_least(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                   EquilibriumReport& report) {
@@ -285,18 +285,20 @@ template <class Solver>
 /// = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The tangent
 /// stiffness contains every term, also those with multipliers.
 ///
-/// If Newton's method does not converge at once, it is applied along the path s = 0 … 1 of
+/// With several load steps, or if one step does not converge, Newton's method is applied along the path s = 0 … 1 of
 ///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
 /// with the factor p of loads and gravity. p₀ ∈ [0, 1] minimises the residual at x; r₀ and Φ₀ are the remaining
 /// residuals. From a reference state the loads increase from zero; from an equilibrium under smaller loads they
-/// increase from these smaller loads.
+/// increase from these smaller loads. If Newton's method does not converge on the path either, a damped motion from x
+/// is followed to a stable equilibrium (`EquilibriumReport::relaxed`).
 ///
 /// If the tangent is singular, the path is followed again by minimum-norm corrections (`MinimumNormStep`). Redundant
 /// constraints are omitted, and their multipliers are zero. Free motions that no load excites are as small as possible.
 /// The report names these constraints and motions.
 ///
 /// \throws NewtonConvergenceFailure; SingularMatrix, naming the motion if a load excites a motion without stiffness;
-/// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue. x is then unchanged.
+/// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue; InvalidInput for
+/// invalid options or a state that does not fit the model. x is then unchanged.
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   options.check();

@@ -12,9 +12,9 @@ namespace polybody {
 
 /// Options of `equilibrium`: load steps and Newton iteration.
 struct EquilibriumOptions {
-  int load_steps = 1;  ///< number of equal load steps for loads and gravity
-  double min_load_step =
-      1e-4;  ///< smallest load step [1]; failed steps are halved, converged steps doubled up to 1/load_steps
+  int load_steps = 1;  ///< number of load steps for loads and gravity, equal if none fails
+  /// Smallest load step [1]. A failed step is halved. A converged step doubles the next one, up to 1/`load_steps`.
+  double min_load_step = 1e-4;
   double tolerance = 1e-11;  ///< largest correction at convergence, relative to 1 + max |q|
   int max_iterations = 50;   ///< largest number of iterations in a load step
 

@@ -7,9 +7,7 @@
 
 namespace polybody::detail {
 
-// Null space of the matrix of the equations of statics, by inverse iteration.
-
-// Test for null vectors of the matrix of the equations of statics, and orthogonalisation of vectors.
+// Null space of the matrix of the equations of statics: test for null vectors, orthogonalisation, inverse iteration.
 
 /// Candidate z for a null vector of A, with A z (`product`) and |A| |z| (`size`).
 struct NullColumn {
@@ -212,8 +210,8 @@ class MinimumNormStep {
     return -1;
   }
 
-  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and violations φ (constraint equations). If the loads
-  /// excite a free motion, `excited` returns its spring.
+  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and required changes φ of the constraint functions
+  /// (constraint equations). If the loads excite a free motion, `excited` returns its spring.
   void solve(VecX const& f, VecX const& phi, VecX const& lambda, VecX& out) {
     double const unit = tangent_->unit();
     for (Index i = 0; i < nv_; ++i) b_[i] = f[i] / unit;
@@ -228,7 +226,8 @@ class MinimumNormStep {
   /// Unknowns with a spring.
   Sequence<Index> const& pins() const { return pins_; }
   VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< column k of Z, for spring k (size)
-  /// Number of the spring whose free motion the loads excite most, beyond round-off; −1 if the loads are balanced.
+  /// Index in `pins` of the spring whose free motion the loads excite most, beyond round-off; −1 if the loads are
+  /// balanced.
   Index excited() const { return excited_; }
   /// Replaces λ by multipliers with the same constraint forces. The new multipliers are zero for constraint equations
   /// with a spring.

@@ -175,8 +175,8 @@ struct CoordinateSum {
 /// Dependent coordinates, expressed by others through the constraint equations.
 class DependentCoordinates {
  public:
-  static constexpr double redundant =
-      1e-10;  ///< largest remainder of a redundant constraint equation, relative to its largest entry
+  /// Largest remainder of a redundant constraint equation, relative to its largest entry.
+  static constexpr double redundant = 1e-10;
   static constexpr std::size_t most_terms = 20000000;
 
   /// Computes the linear combinations of free coordinates. Returns false if they have more than `most_terms` terms.
@@ -281,7 +281,7 @@ class DependentCoordinates {
 /// K is symmetrised. A negative pivot is counted only if its motion x has a negative xᵀK x. The sum xᵀK x is computed
 /// in long double and must be negative beyond the round-off of its terms.
 struct Stability {
-  Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
+  Index negative = -1;  ///< number of negative eigenvalues; −1: more than `most_entries` or `most_terms`
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none
 };
 
@@ -297,7 +297,7 @@ bool is_negative(StaticEntries const& entries, VecX const& x) {
   return sum < -1e-15L * terms;
 }
 
-/// Stability at the state of the last factorisation of `tangent`.
+/// Stability at the state of the last evaluation of `system`, with the multipliers `lambda`.
 template <LinearSolver Solver>
 Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX const& lambda) {
   Stability out;

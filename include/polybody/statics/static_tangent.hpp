@@ -60,7 +60,7 @@ class StaticTangent {
     return bad;
   }
 
-  /// Computes `out` (size) = (x, μ) for f (velocities) and φ (constraint equations).
+  /// Computes `out` (size) = (x, μ) for f (velocities) and required changes φ of the constraint functions.
   void solve(VecX const& f, VecX const& phi, VecX& out) {
     rhs_ << f / factored_, phi;
     solver_.solve(rhs_, out);

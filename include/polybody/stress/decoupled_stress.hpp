@@ -66,7 +66,7 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
 }  // namespace detail
 
 /// Stress at the point (y, z) [m] of the section under section `forces` (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m].
-/// \throws InvalidInput for a bar without section and material, and for a point outside the section.
+/// \throws InvalidInput for a bar given by constants, and for a point outside the section.
 template <class = void>
 SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   SectionStress out;
@@ -115,10 +115,10 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 /// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
 /// deformation has no effect on the recorded motion.
 ///
-/// Only the accelerations q̈ of the solution are used. K e = Q − M Φ q̈, with the nodal loads Q, yields all nodal
-/// displacements e. The forces in a beam follow from the forces at its ends and the loads along it by equilibrium. The
-/// stress of static loads is then exact in every section, for any number of elements and modes ("mode acceleration"
-/// [Williams 1945]).
+/// Only the accelerations q̈ of the solution are used, or q, q̇ and q̈ if `Vibration::follows_deformation` is true. K e
+/// = Q − M Φ q̈, with the nodal loads Q, yields all nodal displacements e. The forces in a beam follow from the forces
+/// at its ends and the loads along it by equilibrium. The stress of static loads is then exact in every section, for
+/// any number of elements and modes ("mode acceleration" [Williams 1945]).
 ///
 /// Example of a filtered history (signals/filter.hpp):
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
@@ -127,14 +127,14 @@ class DecoupledStress {
   /// Quasi-static stress from K e = Q at each sample. The result is valid if the loads change slowly compared with the
   /// structure's vibrations. The stress is independent of `frame`, because recorded loads are balanced. The
   /// displacements are relative to `frame`.
-  /// \throws InvalidInput like `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
+  /// \throws InvalidInput like `StructureLoads`, for a structure with pretension, and for a frame that restrains some,
+  /// but not all rigid motions.
   template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads`, for shapes
-  /// that do not fit the structure or move a coordinate that the frame fixes, and for less than one substep.
-  /// Exceptions of the integrator are passed on.
+  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads` and
+  /// `vibration_of`, and for a structure with pretension. Exceptions of the integrator are passed on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
@@ -145,10 +145,10 @@ class DecoupledStress {
   /// displacements under the elastic and damping forces.
   MatX const& displacements() const { return e_; }
 
-  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar` (see sections.hpp),
-  /// including damping forces. If a load acts at this section, the values just beyond the load are returned. At the end
-  /// of the bar, the values just before the load are returned. \throws InvalidInput outside the bar, and for a
-  /// structure without bars.
+  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar`, counted from 0
+  /// (see sections.hpp), including damping forces. If a load acts at this section, the values just beyond the load are
+  /// returned. At the end of the bar, the values just before the load are returned. \throws InvalidInput outside the
+  /// bar, and for a structure without bars.
   template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
@@ -206,7 +206,7 @@ class DecoupledStress {
   }
   /// Axial and shear stress at the point (y, z) [m] of the section at arc length s [m] of bar number `bar`, with the
   /// section and material of the bar `of`. The result yields the principal stresses and the von Mises stress. \throws
-  /// InvalidInput like `section_stress`.
+  /// InvalidInput like `section_forces` and `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;

@@ -36,7 +36,7 @@ class NodalStress {
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< stresses per nodal coordinate
   /// Named node of the structure.
   struct Spot {
-    Index node = 0;    ///< node number in the finite element model
+    Index node = 0;    ///< index of the node in the structure, from 0
     std::string name;  ///< name of the node
   };
 

@@ -22,10 +22,12 @@ struct StructureLoadOptions {
   /// mass coincide, as for a body and a structure made from the same bar.
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< largest interpolated interval between samples [s]; 0: 1.5 times the median interval
-  double balance_tolerance = 1e-3;  ///< allowed sum of forces and of moments, relative to the sum of their magnitudes
-  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
-  std::vector<LoadPatch> patches =
-      {};  ///< nodes that share the load at the point `at`; only for nodes without rotations
+  double balance_tolerance = 1e-3;  ///< allowed unbalanced force and moment, relative to the sum of the magnitudes
+  /// Nodes within this distance of a load share it [m]. Required for loads on nodes without rotations, except loads at
+  /// the points of `patches`.
+  double patch = 0.0;
+  /// Nodes that share the load at the point `at`; only for nodes without rotations.
+  std::vector<LoadPatch> patches = {};
 };
 
 /// Loads of a recorded motion on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
@@ -55,6 +57,7 @@ class StructureLoads {
 
   /// Computes the loads of a `record` on a `structure`. \throws InvalidInput for fewer than two samples, gaps in the
   /// record, loads that do not balance the structure's inertia, and patches of nodes that cannot carry their load.
+  /// \throws NonFiniteValue if the recorded motion is not finite.
   template <class = void>  // compiled where it is used
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
       : s_(std::move(structure)),

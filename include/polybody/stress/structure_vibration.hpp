@@ -67,7 +67,9 @@ struct Vibration {
   bool follows_deformation = false;
   double stiffness_damping = 0.0;  ///< τ [s]; a damping matrix τ K is added to that of the structure
   bool settled = true;  ///< true: starts at rest in the static deformation of the first loads; false: undeformed
-  int substeps = 1;     ///< steps of the integrator per sample; loads are interpolated linearly
+  /// Steps of the integrator per interval between samples; with step size control, only for the first step. Loads are
+  /// interpolated linearly.
+  int substeps = 1;
 };
 
 namespace detail {
@@ -157,8 +159,8 @@ void require_fitting_shapes(Structure const& s, Vibration const& how, std::strin
 }  // namespace detail
 
 /// Computes the vibration of a structure under `loads`, with the options `how`. \throws InvalidInput for shapes that do
-/// not fit the structure, move a coordinate that the frame fixes or have no stiffness, and for less than one substep.
-/// Exceptions of the integrator are passed on.
+/// not fit the structure, move a coordinate that the frame fixes or have no stiffness, for a negative damping time, and
+/// for less than one substep. Exceptions of the integrator are passed on.
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
   Structure const& s = loads.structure();

@@ -153,7 +153,8 @@ struct Modes {
 /// Computes the `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver, for models of up to some hundred
 /// generalised velocities. Motions without inertia have no frequency and are omitted. K is symmetrised and D is
 /// neglected. Use `damped_modes` for follower loads, whose K is not symmetric, and for rotating models, whose D is
-/// gyroscopic. Frequencies far below the highest frequency are computed accurately (math/symmetric_pencil.hpp).
+/// gyroscopic. Frequencies far below the highest frequency are computed accurately (math/symmetric_pencil.hpp). \throws
+/// InvalidInput for a `count` below 1, and for a model with first-order states.
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "modes");
@@ -218,7 +219,7 @@ struct DampedModes {
 ///
 /// Each first-order state adds one mode. The additional coordinates with these states as rates occur in no equation and
 /// are removed from the matrix.
-/// \throws InvalidInput if a motion that the constraint equations permit has no inertia.
+/// \throws InvalidInput if a motion that the constraint equations permit has no inertia, and for a `count` below 1.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "damped_modes");

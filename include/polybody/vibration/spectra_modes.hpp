@@ -14,14 +14,15 @@ namespace polybody {
 /// uses the implicitly restarted Lanczos iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen
 /// 1992]. The iteration may miss modes of a repeated frequency. With σ just below the last ω², the number of computed
 /// modes with ω² < σ is therefore compared with the number of negative pivots of K − σM (Sylvester's law). If modes are
-/// missing, the iteration is repeated with twice as many vectors, in at most six attempts.
+/// missing or do not converge, the iteration is repeated with twice as many vectors, in at most six attempts.
 struct SpectraModes {
   Index restarts = 1000;     ///< largest number of restarts in one attempt
   double tolerance = 1e-12;  ///< relative error of ω²
 
   /// Computes the `count` lowest modes of the symmetric matrices K and M (n×n); K must be positive definite. The
   /// results are bitwise identical in every run. If `count` is at least half of all modes, DenseModes computes them.
-  /// \throws InvalidInput if K is not positive definite; Error if the iteration does not converge.
+  /// \throws InvalidInput if K is not positive definite; Error if modes do not converge or are missing after six
+  /// attempts.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
     Index const n = k.rows();
@@ -43,9 +44,10 @@ struct SpectraModes {
         }
       }
     }
-    throw Error("modes.not_converged",
-                {ErrorObject{"SpectraModes"}, ": only ", ErrorValue{converged}, " of ", count, " modes converged in ",
-                 restarts, " restarts. Allow more restarts or a larger tolerance, or use DenseModes."});
+    throw Error("modes.not_converged", {ErrorObject{"SpectraModes"}, ": only ", ErrorValue{converged}, " of ", count,
+                                        " modes converged in ", restarts,
+                                        " restarts, or modes of a repeated frequency are missing. Allow more restarts "
+                                        "or a larger tolerance, or use DenseModes."});
   }
 
  private:

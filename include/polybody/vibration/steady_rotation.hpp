@@ -74,7 +74,8 @@ class TurningFrame {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
     system.operations().rigid_velocities(q, origin, omega, w);
   }
-  /// Computes the residual R(q, w, Γw) with the multipliers `lambda`. Afterwards the system is evaluated at (q, w, t).
+  /// Computes the residual R(q, w, Γw) with the multipliers `lambda`. The last evaluation of the system is then at (q,
+  /// w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
     velocities(q, w_);
     a_.noalias() = share * generator_ * w_;
@@ -106,11 +107,11 @@ class TurningFrame {
     system.violation_rate(rate);
     Index i = 0;
     if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
-      throw InvalidInput(
-          "steady_rotation.joint",
-          {"SteadyRotation: ", ErrorObject{system.name_of(system.velocities() + i)},
-           " does not rotate with the model (its constraint violation grows at a rate of ", ErrorValue{rate[i]},
-           "). Align the joint with the axis of rotation; set a drive to the rate of the rotation."});
+      throw InvalidInput("steady_rotation.joint",
+                         {"SteadyRotation: ", ErrorObject{system.name_of(system.velocities() + i)},
+                          " does not rotate with the model (its constraint violation grows by ", ErrorValue{rate[i]},
+                          " m or rad per second). Align the joint with the axis of rotation; set a drive to the rate "
+                          "of the rotation."});
   }
 
  private:
@@ -206,7 +207,7 @@ struct TurningEquilibrium {
 }  // namespace detail
 
 /// State x in steady rotation: v = w(q), a = Γw; coordinates and multipliers are those of x. \throws InvalidInput for
-/// planar bodies if the axis is not parallel to z.
+/// planar bodies if the axis is not parallel to z, and for models with first-order states.
 template <class = void>
 State rotating_state(System& system, State const& x, SteadyRotation const& rotation) {
   require_usable(system, x);
@@ -256,7 +257,7 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
 /// Linearisation about x in steady rotation; coordinates, multipliers and time of x are used. `damped_modes` of the
 /// result computes the motions ε = Re(shape e^{st}) relative to the rotating model. \throws InvalidInput if forces do
 /// not balance at x, or if forces or constraint equations do not rotate with the model. Gravity perpendicular to the
-/// axis is such a force.
+/// axis does not rotate with the model.
 template <class = void>
 Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
   require_usable(system, x);
