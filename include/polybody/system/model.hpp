@@ -135,8 +135,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element unless the other arguments contain exactly its one or two markers, or a tuple of its
-  /// markers.
+  /// Refuses a force element unless the second argument and `others` contain exactly its one or two markers, or a tuple
+  /// of its markers.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
