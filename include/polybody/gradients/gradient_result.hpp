@@ -112,8 +112,8 @@ struct GradientResult {
 
 namespace detail {
 
-/// Largest number of stored states. \param size size of one state [bytes]. \throws InvalidInput if not even one state
-/// fits into the memory.
+/// Largest number of stored states. \param size size of one state [bytes]. \throws InvalidInput if `snapshots` is zero
+/// and `memory` is less than the size of one state.
 template <class = void>
 std::size_t snapshots_of(GradientOptions const& options, double size) {
   if (options.snapshots > 0) return options.snapshots;
