@@ -258,10 +258,12 @@ class AdjointRun {
 /// with respect to each parameter. Newton's method iterates until corrections are below 1e-12 or at round-off. \param
 /// integrator integrator of the generalised-α family, without `stabilised`; RungeKutta4; DormandPrince, whose step
 /// lengths are constants; or Radau. \throws InvalidInput for invalid parameters or options; if the factory makes models
-/// of different sizes; if an event only touches zero; if two events coincide, or other times coincide so that the run
-/// is not differentiable; for events, breakpoints, or times that depend on a parameter, with a Runge–Kutta method; if
-/// none of these occur, and a run with start correction has steps of different lengths. \throws SingularMatrix in a
-/// singular configuration; NonFiniteValue; and the exceptions of `simulate`.
+/// of different sizes; if a parameter changes equations of an object outside its `affects`; if the run has no step; if
+/// an event only touches zero or remains zero; if two events coincide, or other times coincide so that the run is not
+/// differentiable. With a Runge–Kutta method, InvalidInput is also thrown for events, breakpoints, and times that
+/// depend on a parameter. In a run with start correction and with none of these three, it is also thrown if the
+/// correction depends on a parameter or if the steps have different lengths. \throws SingularMatrix
+/// in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {

@@ -82,8 +82,8 @@ class NearbyModels {
 /// Derivatives of functions of scenarios by differences. If the time of a state depends on parameter j, the change of
 /// the state with j has two parts. The first part is the change at fixed time. The perturbed models are evaluated in
 /// states with this change, so that stiff elements are not excited. The second part is the change along the motion
-/// during the change of time. This time can exceed a step, so the second part is differenced over a small fraction of a
-/// step, with the unperturbed model. \tparam V PerturbedModel or PerturbedStageModel
+/// during the change of time. This time can exceed a step, so the second part is differenced with the unperturbed model
+/// over at most ±0.8 % of a step. \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class PerturbedModels {
  public:
