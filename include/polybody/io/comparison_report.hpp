@@ -129,7 +129,7 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
 /// Draws the histories of all runs as figures in `folder`:
 ///   `outputs`      each output and its difference from the first run, in descending order of the relative difference
 ///   `violations`   constraint violations of positions, velocities and accelerations
-///   `joint_force`  force of the joint with the largest peak force
+///   `joint_force`  largest force of all joints at each time
 ///   `energies`     kinetic and potential energy, and change of the total energy since the start
 ///   `cost`         largest relative difference of each run from the first run, over the CPU time
 ///
@@ -152,7 +152,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
   detail::draw_panels(violations, 1, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
-  detail::draw_panels({detail::over_time(c, "Force of the joint with the largest peak force", "force [N]", force)}, 1,
+  detail::draw_panels({detail::over_time(c, "Largest force of all joints", "force [N]", force)}, 1,
                       folder / "joint_force", draw, written);
   detail::draw_panels({detail::over_time(c, "Kinetic energy", "energy [J]",
                                          [](Run run, std::size_t k) { return run.energies[k].kinetic; }),

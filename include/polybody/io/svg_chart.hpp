@@ -73,7 +73,7 @@ class ChartAxis {
     }
   }
 
-  /// Labels at the given values of a horizontal axis, as far as they have space.
+  /// Ticks at the given values of a horizontal axis. A label that would overlap the previous one is omitted.
   void mark(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
