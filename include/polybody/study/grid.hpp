@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Points of a study on grids and from lists.
+/// Points of a study on grids and from lists, and the elementary functions that compute them.
 
 #include <charconv>
 #include <cmath>
