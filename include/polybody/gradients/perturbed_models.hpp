@@ -340,8 +340,8 @@ class PerturbedModels {
     out.v = dt * x.a;
     return out;
   }
-  /// ∂r/∂t and ∂Φ/∂t at a point of a step, by backward differences of fourth order [Fornberg 1988]. They extend over
-  /// 0.08 h before the point.
+  /// ∂r/∂t and ∂Φ/∂t at a point of a step, by backward differences of fourth order [Fornberg 1988] over 0.08 h before
+  /// the point. These times lie within the step, because the first point of every method is later than 0.15 h.
   template <class Place>
   EquationDerivative rate_of_equations(Place const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
