@@ -4,6 +4,7 @@
 /// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations. It
 /// therefore also converges in the steps of a diverging motion.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -251,12 +252,8 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   if (account_.energy < never) work_.begin(system, place);
   laws_.begin(layout, place.t, 1e-6 * place.h);
   lossless_ = work_.complete();
-  bool changes = false;
-  for (BodyLayout const& body : layout.bodies) {
-    lossless_ = lossless_ && body.lossless;
-    changes = changes || body.changes;
-  }
-  if (changes) account_.energy *= 100.0;  // the energy of these bodies changes without work
+  for (BodyLayout const& body : layout.bodies) lossless_ = lossless_ && body.lossless;
+  if (std::ranges::any_of(layout.bodies, &BodyLayout::changes)) account_.energy *= 100.0;  // changes without work
   for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
   for (std::size_t i = 0; i < layout.forces.size(); ++i) {
     ForceLayout const& force = layout.forces[i];
