@@ -10,7 +10,8 @@ Headers
   - take the description of a member that a concept requires from docs/extending.md if the member has no comment.
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
-  - are ordered by the links in the pages of docs/site: \\subpage.
+  - are ordered by the links in the pages of docs/site: \\subpage;
+  - and their formulas $…$ and $$…$$ are formulas of Doxygen.
 Lines keep their numbers, so that a warning names the right one.
 
 """
@@ -139,7 +140,7 @@ def header(name, text):
 # --- pages ------------------------------------------------------------------------------------
 def label(path):
     """docs/guide/contact.md -> guide_contact, docs/joints.md -> page_joints"""
-    return f"{path.parent.name if path.parent.name in ('guide', 'site') else 'page'}_{path.stem}"
+    return f"{path.parent.name if path.parent.name in ('guide', 'theory', 'site') else 'page'}_{path.stem}"
 
 
 def anchor(heading):
@@ -149,21 +150,26 @@ def anchor(heading):
 
 
 def page(path, text):
-    own, in_code = label(path), False
+    own, in_code, in_formula = label(path), False, False
     out = []
-    for line in text.split("\n"):
+    for line in DISPLAY.sub(r"\\f[\1\\f]", text).split("\n"):
         if line.startswith("```"):
             in_code = not in_code
+        elif in_formula or "\\f[" in line:
+            in_formula = "\\f]" not in line
         elif not in_code:
             if heading := re.match(r"^(#+) (.*)$", line):
                 name = own if heading[1] == "#" else f"{own}_{anchor(heading[2])}"
                 line = f"{line} {{#{name}}}" if own != "site_index" or heading[1] != "#" else line
-            line = "".join(part if i % 2 else LINK.sub(lambda m: link(path, m), part) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
+            line = "".join(part if i % 2 else FORMULA.sub(r"\\f$\1\\f$", LINK.sub(lambda m: link(path, m), part)) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
         out.append(line)
     return "\n".join(out)
 
 
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
+
+
+FORMULA, DISPLAY = re.compile(r"\$([^$]+)\$"), re.compile(r"\$\$(.+?)\$\$", re.S)
 
 
 def title(path):
