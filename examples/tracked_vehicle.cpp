@@ -1,4 +1,5 @@
-// The tracked vehicle of Chapter 3 (Figures 3.6 to 3.15, Table 3.4) with its tracks under five joint formulations.
+// The tracked vehicle of Chapter 3 (Figures 3.6 to 3.15, Table 3.4) with its tracks under five joint formulations, and
+// under every combination of links, pins and integrator.
 //   tracked_vehicle --policy penalty --until 3
 //   tracked_vehicle --compare
 //   tracked_vehicle --figure 3.11
@@ -256,7 +257,8 @@ void check(Options const& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  CommandLine line{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
+  CommandLine line{
+      "The tracked vehicle of Chapter 3: its figures, and runs of every combination of links, pins and integrator."};
   double step = 0.0;
   add_combination_options(
       line, o,

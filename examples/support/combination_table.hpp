@@ -26,10 +26,11 @@ struct BodyName {
 struct BodyOnPolicy {
   BodyName body;
   std::string policy;
-  bool usual = false;                       // true: the policy of this body without --policy
-  std::string_view family = {};             // of the body (bodies/shared/family.hpp)
-  std::string enforcement = {};             // name of the policy's type
-  std::vector<std::string> refusals = {};   // for each integrator: sentence of its refusal; empty if the combination exists
+  bool usual = false;            // true: the policy of this body without --policy
+  std::string_view family = {};  // of the body (bodies/shared/family.hpp)
+  std::string enforcement = {};  // name of the policy's type
+  std::vector<std::string> refusals =
+      {};  // for each integrator: sentence of its refusal; empty if the combination exists
 
   FormulationMesh mesh_of(Index elements, Index modes) const;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Sentences with which Model::connect and simulate refuse a combination of body, policy and integrator, as values that a
-// program can print. The test `sentences` compares them with the texts of the static_asserts.
+// Sentences with which Model::connect and simulate refuse a combination of body, policy and integrator, as values that
+// a program can print. The test `sentences` compares them with the texts of the static_asserts.
 #include <polybody/integrators/system_for.hpp>
 #include <polybody/run/any_model.hpp>
 #include <polybody/system/model.hpp>
@@ -18,8 +18,8 @@ struct NamedIntegrator {
 template <class T>
 inline constexpr bool sentence_missing = false;
 
-// Text of the static_assert of Model::connect (detail::require_pairing) that refuses joint J between the bodies A and B;
-// empty if the joint exists.
+// Text of the static_assert of Model::connect (detail::require_pairing) that refuses joint J between the bodies A and
+// B; empty if the joint exists.
 template <class J, class A, class B>
 constexpr char const* connect_refusal() {
   using G = typename J::Geometry;

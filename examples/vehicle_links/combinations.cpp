@@ -82,7 +82,8 @@ void add_combination_options(CommandLine& line, LinkSettings& o, SelectionHelp h
   help.integrator = "integrator, or a list such as hht,radau (default: generalised-alpha)";
   help.modes = " of ffr and fe, ascending; a single run takes the last one (default: 3)";
   add_selection(line, o.selection, body_names(), table().integrators, help);
-  line.not_negative("--elements", &o.elements, "elements of a flexible link except fe; 0: one, or two in a floating frame");
+  line.not_negative("--elements", &o.elements,
+                    "elements of a flexible link except fe; 0: one, or two in a floating frame");
   line.positive("--tolerance", &o.tolerance,
                 "tolerance of Newton's method (if omitted, 1e-5); for adams and dormand-prince, of the error of a step "
                 "(if omitted, 1e-6)");
@@ -126,7 +127,8 @@ std::string integrator_name(Combination const& c) { return table().integrators[c
 
 bool has_step_control(Combination const& c) {
   bool controlled = false;
-  by_integrator({}, c, [&](auto const& i) { controlled = requires { std::remove_cvref_t<decltype(i)>::adaptive_step; }; });
+  by_integrator({}, c,
+                [&](auto const& i) { controlled = requires { std::remove_cvref_t<decltype(i)>::adaptive_step; }; });
   return controlled;
 }
 
@@ -154,9 +156,8 @@ bool run_combinations(LinkSettings const& settings, std::string const& compariso
   LinkSettings o = settings;
   o.start = std::make_shared<m113::TrackStart const>(settled(o));
   if (comparison == "steps")
-    return run_ten_steps(table(), [&](Choice const& choice) {
-      return ten_steps(o, {all_links()[choice.row], choice.integrator});
-    });
+    return run_ten_steps(
+        table(), [&](Choice const& choice) { return ten_steps(o, {all_links()[choice.row], choice.integrator}); });
   compare_selected(o);
   return true;
 }

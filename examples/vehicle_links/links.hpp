@@ -25,9 +25,9 @@ struct LinkSettings : Settings {
 
   combinations::Selection selection;        // --body, --policy, --integrator, and the comparison at equal error
   std::string output = "forward position";  // output of the comparison at equal error
-  bool default_step = true;                 // true: an explicit integrator of fixed steps takes the stable step of the pins
+  bool default_step = true;  // true: an explicit integrator of fixed steps takes the stable step of the pins
   double sampled = 5e-4, sampled_below = 5e-4;  // histories of steps below the second value have the first interval [s]
-  double tolerance = 0.0;                       // of Newton's method, or of the error of a step [1]; 0: the default of the integrator
+  double tolerance = 0.0;  // of Newton's method, or of the error of a step [1]; 0: the default of the integrator
   double spring_pins = m113::pin_stiffness;  // stiffness of pins as penalties or bushings [N/m]
   std::optional<Index> modes = {};           // modes of a floating frame; empty: three
   FfrTerms terms = {};                       // terms of the equations of floating frames
@@ -62,8 +62,8 @@ struct RigidLink {
 };
 // Selection and outputs of the watched link.
 struct WatchedLink {
-  std::optional<RigidLink> rigid = {};        // link whose loads are recorded; its strain is computed after the run
-  std::vector<RigidLink> rigid_links = {};    // rigid links of both tracks, whose stress a film shows
+  std::optional<RigidLink> rigid = {};      // link whose loads are recorded; its strain is computed after the run
+  std::vector<RigidLink> rigid_links = {};  // rigid links of both tracks, whose stress a film shows
   std::function<void(State const&, LinkHistory&)> see = {};  // adds the outputs of a flexible link in a state
 };
 struct LinkVehicle {
@@ -74,7 +74,8 @@ struct LinkVehicle {
 // Links of one body formulation on pins of one policy.
 struct LinksOnPins : combinations::BodyOnPolicy {
   bool turns = true;  // false: the vehicle cannot turn, because its pins keep their direction in world axes
-  // Longest stable step of RungeKutta4 [s]: 2.8 divided by the fastest rate, which `track_times` prints for rigid links.
+  // Longest stable step of RungeKutta4 [s]: 2.8 divided by the fastest rate, which `track_times` prints for rigid
+  // links.
   double stable_step = 1e-6;
   std::function<LinkVehicle(LinkSettings const&, VehicleParts const&)> make = {};
 };
