@@ -2,7 +2,6 @@
 
 #include <polybody/signals/filter.hpp>
 
-#include "formulations.hpp"
 #include "measures.hpp"
 
 namespace chapter4 {
@@ -79,10 +78,13 @@ std::vector<SettingRuns> runs_of_settings(Options const& o) {
     print(all.back());
   };
   for (auto const& [name, setting] : plausible(o))
-    add(name, setting, run(setting, {on_pins(rigid_links()), on_pins(cable_links())}));
+    add(name, setting, run(setting, {combination(setting, "rigid"), combination(setting, "ancf")}));
   // The run by Adams has rigid links only, because cables would need steps of less than a microsecond. The cables in
   // its results are those of the first setting.
-  StressRuns by_adams = rigid_links_by_adams(o);
+  Options adams = o;
+  adams.film = nullptr;
+  adams.selection.integrators = {"adams"};
+  StressRuns by_adams = run_of(adams, combination(adams, "rigid"), "rigid, Adams");
   StressRuns const& given = all.front().runs;
   by_adams.comparison.runs.push_back(given.comparison.runs[1]);
   by_adams.outcomes.push_back(given.outcomes[1]);

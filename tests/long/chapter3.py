@@ -35,7 +35,7 @@ CASES = {
     "bumps": (PAGE, VEHICLE + "--bumps", lines),
     **{
         f"by_{integrator}": (PAGE, VEHICLE + f"--integrator {integrator} --until 0.1", lines)
-        for integrator in ["alpha", "hht", "radau", "adams", "dormand-prince", "rk"]
+        for integrator in ["generalised-alpha", "hht", "radau", "adams", "dormand-prince", "runge-kutta"]
     },
     "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
 }
