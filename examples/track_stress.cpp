@@ -402,6 +402,12 @@ void compare_terms(Options o) {
       {"no Coriolis forces, 2 S1 q'", {.coriolis = false}},
       {"no centrifugal forces by the deformation, S2 q", {.centrifugal = false}},
       {"no centrifugal forces on the link as it is, I0 w", {.spin = false}},
+      {"only m_fr q_r'' and I0 w, assumptions 1 to 4",
+       {.onto_frame = false,
+        .deformed_inertia = false,
+        .frame_velocities = false,
+        .coriolis = false,
+        .centrifugal = false}},
       {"none of these",
        {.coupling = false,
         .onto_frame = false,
@@ -490,7 +496,8 @@ void side_by_side(Options const& o, std::vector<Combination> const& combinations
 void open_film(Options& o) {
   if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
   if (o.film_file.empty()) return;
-  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.halve || o.restart)
+  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.compare == "stiffness" || o.halve ||
+      o.restart)
     throw InvalidInput(
         "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --links, "
         "--figure, --compare links, --compare pair and --compare ensemble.");
@@ -516,11 +523,12 @@ int main(int argc, char** argv) {
               "joint policy of the pins; if omitted, linear for ancf, beam and continuum, otherwise constraint");
   line.not_negative("--elements", &o.elements,
                     "elements of a flexible link except fe; 0: one, or two in a floating frame");
-  line.one_of("--compare", &o.compare, {"links", "pair", "matrix", "terms", "surface", "ensemble"},
+  line.one_of("--compare", &o.compare, {"links", "pair", "matrix", "terms", "surface", "ensemble", "stiffness"},
               "links: all links except fe, each on its usual pins; pair: rigid and ancf; matrix: every link on "
               "every pin; terms: ffr without "
               "parts of its equations; surface: stress at nodes of fe, decoupled and coupled; "
-              "ensemble: rigid and ancf with other values of data that the thesis does not give",
+              "ensemble: rigid and ancf with other values of data that the thesis does not give; "
+              "stiffness: rigid and ancf with links of other stiffnesses",
               "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
               "points of a link at which contact forces act: all at its middle, or each at its contact point");
@@ -572,6 +580,8 @@ int main(int argc, char** argv) {
       surface_stress(o);
     else if (o.compare == "ensemble")
       ensemble(o);
+    else if (o.compare == "stiffness")
+      compare_stiffnesses(o);
     else if (o.compare == "pair")
       side_by_side(o, {on_pins(rigid_links()), on_pins(cable_links())});
     else if (o.compare == "links")

@@ -24,6 +24,7 @@ struct Options : Settings {
   FfrTerms terms = {};   // terms of the equations of floating frames
   // Height of a flexible link's section, divided by the height that gives the mass of a rigid link [1].
   double section = 1.0;
+  double young = 1.0;     // Young's modulus of links other than ffr and fe, divided by that of steel [1]
   double cut_off = 15.0;  // cut-off frequency of the low pass [Hz]
   bool bands = false;     // true: figures show the range over other values of data that the thesis does not give
   bool halve = false, restart = false, fatigue = false;
