@@ -407,6 +407,12 @@ void compare_terms(Options o) {
       {"no Coriolis forces, 2 S1 q'", {.coriolis = false}},
       {"no centrifugal forces by the deformation, S2 q", {.centrifugal = false}},
       {"no centrifugal forces on the link as it is, I0 w", {.spin = false}},
+      {"only m_fr q_r'' and I0 w, assumptions 1 to 4",
+       {.onto_frame = false,
+        .deformed_inertia = false,
+        .frame_velocities = false,
+        .coriolis = false,
+        .centrifugal = false}},
       {"none of these",
        {.coupling = false,
         .onto_frame = false,
@@ -512,7 +518,8 @@ void check(Options const& o) {
 void open_film(Options& o) {
   if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
   if (o.film_file.empty()) return;
-  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.halve || o.restart)
+  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.compare == "stiffness" || o.halve ||
+      o.restart)
     throw InvalidInput(
         "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --body, "
         "--figure, --compare links, --compare pair and --compare ensemble.");
@@ -534,11 +541,12 @@ int main(int argc, char** argv) {
        .policy = "policy of the pins, or a list (default: ancf-linear for ancf, ancf-engineering, beam and continuum, "
                  "else constraint)"});
   line.one_of("--compare", &o.compare,
-              {"links", "pair", "matrix", "terms", "surface", "ensemble", "combinations", "steps"},
+              {"links", "pair", "matrix", "terms", "surface", "ensemble", "stiffness", "combinations", "steps"},
               "links: all links except fe, each on its usual pins; pair: rigid and ancf; matrix: every link on "
               "every pin; terms: ffr without "
               "parts of its equations; surface: stress at nodes of fe, decoupled and coupled; "
-              "ensemble: rigid and ancf with other values of data that the thesis does not give; combinations: the "
+              "ensemble: rigid and ancf with other values of data that the thesis does not give; "
+              "stiffness: rigid and ancf with links of other stiffnesses; combinations: the "
               "selected ones at equal error; steps: ten steps of every combination",
               "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
@@ -597,6 +605,8 @@ int main(int argc, char** argv) {
       surface_stress(o);
     else if (o.compare == "ensemble")
       ensemble(o);
+    else if (o.compare == "stiffness")
+      compare_stiffnesses(o);
     else if (o.compare == "pair")
       side_by_side(o, of_bodies(o, {"rigid", "ancf"}));
     else if (o.compare == "links")

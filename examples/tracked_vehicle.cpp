@@ -43,10 +43,10 @@ class RunsMade {
   }
 
  private:
-  // Key of a run within one call: pins, suspension and step.
-  using Key = std::tuple<std::string, bool, double>;
+  // Key of a run within one call: pins, suspension, preload and step.
+  using Key = std::tuple<std::string, bool, double, double>;
   Runs const& made(Options const& o, Pins const& pins) {
-    Key const key{pins.name, o.suspension, o.step};
+    Key const key{pins.name, o.suspension, o.preload, o.step};
     auto const found = made_.find(key);
     if (found != made_.end()) return found->second;
     Options mine = o;
@@ -108,6 +108,8 @@ class Figures {
     if (wanted("3.8") || wanted("3.9") || wanted("3.10") || !o_.compare.empty()) formulations();
     if (wanted("3.11") || wanted("3.12")) forces(m113::pin_stiffness, "11", "12");
     if (wanted("3.13") || wanted("3.14")) forces(m113::soft_pin_stiffness, "13", "14");
+    if (wanted("3.11") || wanted("3.12") || wanted("3.13") || wanted("3.14"))
+      for (auto* const pins : {ideal_pins, cable_pins}) force_spread(pins);
     if (wanted("3.15")) gaps();
   }
 
@@ -187,6 +189,17 @@ class Figures {
                 force_cut_off);
     }
     for (std::size_t k = 0; k < r.comparison.runs.size(); ++k) force_line(lines_, r, k);
+  }
+
+  // Difference of the forces in two runs with the same pins, the second with a preload that differs in the last place.
+  void force_spread(Pins (*pins_of)(Options const&)) {
+    Options perturbed = o_;
+    perturbed.film = nullptr;
+    perturbed.preload = std::nextafter(o_.preload, std::numeric_limits<double>::infinity());
+    Pins const pins = pins_of(o_);
+    Runs const first = runs_(o_, {pins}), second = runs_(perturbed, {pins_of(perturbed)});
+    if (first.times(0).back() >= 4.0)
+      lines_("30 Hz force, " + pins.name + " perturbed", force_differences(first, 0, second, 0));
   }
 
   void gaps() {
@@ -284,6 +297,8 @@ int main(int argc, char** argv) {
   line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
   line.option("--preload", &o.preload, "preload of the tensioners [N]");
   line.positive("--penalty", &o.spring_pins, "stiffness of penalty pins and bushings [N/m]");
+  line.flag("--shared-contacts", &o.shared_contacts,
+            "stiffness and damping of Table 3.2 belong to all contact points of a link on one body, not to each point");
   line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.flag("--bumps", &o.bumps, "ground with three bumps");

@@ -43,6 +43,7 @@ struct Settings {
   int cut = 0;
   int elements = 0;  // elements of a flexible link; 0: the least number of its formulation
   m113::ContactsAct contacts = m113::ContactsAct::in_the_middle;
+  bool shared_contacts = false;                        // as `VehicleOptions::shared_contacts`
   std::shared_ptr<m113::TrackStart const> start = {};  // initial positions of the links; null: each run computes them
   double animate = 0.0;                  // interval between states of a ParaView animation [s]; 0: no animation
   std::shared_ptr<Film> film = nullptr;  // film with a scene for each run; null: no film

@@ -123,7 +123,7 @@ void add_formulation_options(CommandLine& line, FormulationOptions& o, std::vect
   line.one_of("--case", &o.which, cases,
               "what to run. run: one run of each chosen combination; compare: comparison at equal error; equal-mesh: "
               "comparison with equal meshes and steps; combinations: ten steps of each combination; all: all cases but "
-              "run, compare and combinations");
+              "run, compare, split and combinations");
   std::string const of_cases = "; for 'run' and 'compare' a list, such as ";
   add_selection(
       line, o, all_bodies, names_of(integrators),

@@ -193,7 +193,8 @@ m113::VehicleOptions vehicle_options(Settings const& s) {
           .preload = s.preload,
           .cut = s.cut,
           .link_elements = s.elements,
-          .contacts = s.contacts};
+          .contacts = s.contacts,
+          .shared_contacts = s.shared_contacts};
 }
 
 GeneralisedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }

@@ -7,7 +7,7 @@ namespace chapter4 {
 
 // Structure with the mass of the rigid link, even if its section has another height.
 inline Structure structure_of_link(LinkSettings const& o) {
-  Bar bar = m113::link_bar({}, section_height(o));
+  Bar bar = m113::link_bar({}, section_height(o), o.young * m113::youngs_modulus);
   double const heavier = o.section == 1.0 ? 1.0 : o.masses.link.mass / flexible_mass(o);
   bar.material->density = heavier * bar.material->density;
   return m113::link_structure(bar);

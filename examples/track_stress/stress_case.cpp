@@ -73,6 +73,7 @@ void recover(Options const& o, Recording const& recording, LinkHistory& h) {
     DecoupledStress const stress = recovered(o, record);
     h.strain = m113::link_strain(stress);
     h.bending = m113::link_bending(stress, section_height(o));
+    for (double& strain : h.bending) strain /= o.young;
     if (o.surface) add_surface(h, o, record);
   });
   h.vibration = cpu_of([&] { h.vibrating = m113::link_strain(vibrating(o, record)); });

@@ -33,6 +33,7 @@ struct LinkSettings : Settings {
   FfrTerms terms = {};                       // terms of the equations of floating frames
   // Height of a flexible link's section, divided by the height that gives the mass of a rigid link [1].
   double section = 1.0;
+  double young = 1.0;    // Young's modulus of links other than ffr and fe, divided by that of steel [1]
   std::string files;     // folder of the files of a finite element link
   bool surface = false;  // true: computes the stress at named nodes of its surface, also after a run with rigid links
 

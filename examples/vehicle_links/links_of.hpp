@@ -29,10 +29,10 @@ WatchedLink watched(LinkSettings const& o, std::shared_ptr<V const> const& vehic
         return {.see = [o, vehicle, link](State const& x, LinkHistory& h) {
           add_surface(h, o, x.q.segment(vehicle->model.entry(link).q0 + 7, link.body().deformations()));
         }};
-    return {.see = [height = section_height(o), vehicle, link](State const& x, LinkHistory& h) {
+    return {.see = [height = section_height(o), young = o.young, vehicle, link](State const& x, LinkHistory& h) {
       h.strain.push_back(m113::link_strain(link, x));
       Vec3 const lateral = vehicle->hull(x).A.col(1);
-      h.bending.push_back(m113::link_bending(link, x, lateral, height));
+      h.bending.push_back(m113::link_bending(link, x, lateral, height) / young);
     }};
   }
 }
@@ -44,6 +44,7 @@ template <class B>
 m113::LinkOf<B> with_section(LinkSettings const& o) {
   m113::LinkOf<B> links;
   if constexpr (requires { links.height; }) links.height = section_height(o);
+  if constexpr (requires { links.young; }) links.young = o.young * m113::youngs_modulus;
   return links;
 }
 

@@ -26,6 +26,7 @@ def lines(text):
 CASES = {
     "table_3_4": (PAGE, VEHICLE + "--figure table", lines),
     "figures_3": (PAGE, VEHICLE + "--figure all --audit", lines),
+    "shared_contacts": (PAGE, VEHICLE + "--shared-contacts --figure 3.7 --until 1", lines),
     "plateau_25": (PAGE, VEHICLE + "--until 20", lines),
     "plateau_30": (PAGE, VEHICLE + "--until 20 --speed 30", lines),
     "plateau_80": (PAGE, VEHICLE + "--until 20 --speed 80", lines),

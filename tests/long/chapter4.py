@@ -164,7 +164,13 @@ ENSEMBLE = {
                                                     if not name.startswith(OTHER_MASS))},
     "each": {"vibrating off": lambda numbers: max(of["vibrating off"] for of in numbers.values())}}
 BENT = ("no m_rf", "none of these")
+STIFFNESS = {"all": {"ratio off": lambda numbers: max(100.0 * abs(of["ratio"] - 1.0) for of in numbers.values())}}
 TERMS = {"others": {"raw": worst_term("raw", BENT), "bending": worst_term("bending", BENT)}, "each": {"low pass": worst_term("low pass")}}
+
+stiffness = columns(12, ["axial", "decoupled", "coupled", "ratio", "off", "apart"],
+                    ["E, divided by that of steel", "EA/p [MN/m]", "decoupled [10⁻⁵]", "coupled [10⁻⁵]", "ratio of decoupled to coupled",
+                     "difference, rms [%]", "difference of the final positions [mm]"],
+                    {"axial": 1, "decoupled": 3, "coupled": 3, "ratio": 3, "off": 1, "apart": 1})
 
 CASES = {
     "matrix": (PAGE, "track_stress --compare matrix --until 3 --no-plot", matrix),
@@ -174,6 +180,7 @@ CASES = {
     "surface_30": (PAGE, "track_stress --compare surface --until 10 --no-plot", with_rows(surface, SURFACE)),
     "surface_80": (PAGE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
     "terms": (PAGE, "track_stress --compare terms --until 4 --speed 80 --no-plot", with_rows(terms, TERMS)),
+    "stiffness": (PAGE, "track_stress --compare stiffness --until 4 --no-plot", with_rows(stiffness, STIFFNESS)),
     "links_30": (PAGE, "track_stress --compare --audit --fatigue --no-plot", links),
     "links_80": (PAGE, "track_stress --compare --audit --fatigue --speed 80 --no-plot", links),
     "twenty": (PAGE, "track_stress --figure 4.11 --no-plot", twenty),

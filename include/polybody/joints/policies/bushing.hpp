@@ -45,7 +45,8 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
 /// of b relative to a in the joint's axes, fixed in a: translations [m], then rotations [rad], of any size. The free
 /// directions of the geometry stay free: their rows and columns of K and C have no effect. For a stiffness in all
 /// directions (a torsional spring in a revolute joint, within half a turn), use `RelativeCoordinates` as the geometry,
-/// which has no free direction. The elastic force derives exactly from the potential ½ xᵀK x.
+/// which has no free direction. The elastic force derives exactly from the potential ½ xᵀK x. The rate ẋ is the exact
+/// derivative of x. In the thesis it is Aᵀṙ, without the term of Ȧ, the rotation of the axes.
 struct Bushing {
   static constexpr char const* name = "Bushing";
   static constexpr bool linear = true;  ///< true: λ is linear in g and ġ
