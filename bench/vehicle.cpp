@@ -1,6 +1,6 @@
 // Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4): processor time per
 // second of driving, mean, 99.9 % quantile and maximum of a step, counts of Newton's method, and the time of each part
-// of a step with the flop limit of its factorisation. Options: bench_vehicle [--links X] [--pins Y] [--until S]
+// of a step with the flop limit of its factorisation. Options: bench_vehicle [--body X] [--policy Y] [--until S]
 // [--speed W]. With --causes 1: iterations and factorisations of steps by the number of contacts that begin or end.
 // With --variants 1: possible gain of eight vehicles in the lanes of SIMD vectors, with speeds that differ by up to one
 // percent.
@@ -11,13 +11,13 @@
 
 #include <polybody/integrators/step_tangent.hpp>
 
-#include "../examples/track_stress/formulations.hpp"
+#include "../examples/vehicle_links/links.hpp"
 #include "lockstep.hpp"
 #include "timing.hpp"
 
 namespace {
 
-using namespace chapter4;
+using namespace chapter3;
 
 double cpu() {
   timespec t;
@@ -63,8 +63,8 @@ Parts parts_of(AnyModel const& model, State const& full, GeneralisedAlpha const&
   return {us[0], us[1], us[2], us[3] - numeric, numeric, linear.flops() / timing::eigen_rate()};
 }
 
-void measure(Options const& o, Combination const& combination) {
-  Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
+void measure(LinkSettings const& o, LinksOnPins const& links) {
+  Built const built = built_of(o, links);
   AnyModel const& model = built.vehicle.model;
   State x = model.reference_state();
   GeneralisedAlpha const by = integrator(o);
@@ -85,7 +85,7 @@ void measure(Options const& o, Combination const& combination) {
   Parts const p = parts_of(model, x, by, o.step);
   std::printf(
       "| `%s` | `%s` | %.2f | %.0f, %.0f, %.0f | %.2f, %.2f | %.0f, %.0f, %.0f | %.0f, %.0f (%.0f) | %.0f |\n",
-      combination.links.c_str(), combination.pins.c_str(), 1e-6 * sum / o.end_time, sum / steps,
+      links.body.name.c_str(), links.policy.c_str(), 1e-6 * sum / o.end_time, sum / steps,
       times[times.size() - 1 - times.size() / 1000], times.back(), iterations, factorisations, p.evaluation, p.residual,
       p.solution, p.writing, p.factorisation, p.limit,
       100.0 * (iterations * (p.evaluation + p.residual + p.solution) + factorisations * (p.writing + p.factorisation)) *
@@ -109,8 +109,8 @@ std::vector<std::size_t> touching(AnyVehicle const& vehicle, System& system, Sta
 }
 
 /// Prints iterations and factorisations of steps by the number of contacts that begin or end within the step.
-void causes(Options const& o, Combination const& combination) {
-  Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
+void causes(LinkSettings const& o, LinksOnPins const& links) {
+  Built const built = built_of(o, links);
   AnyModel const& model = built.vehicle.model;
   State x = model.reference_state();
   Simulation<GeneralisedAlpha> run =
@@ -141,7 +141,7 @@ void causes(Options const& o, Combination const& combination) {
     factorisations = double(report.factorisations);
     before.swap(after);
   }
-  std::printf("| `%s` | `%s` |", combination.links.c_str(), combination.pins.c_str());
+  std::printf("| `%s` | `%s` |", links.body.name.c_str(), links.policy.c_str());
   for (Class const& c : classes)
     std::printf(" %.0f: %.2f, %.2f |", 100.0 * c.steps / double(run.report().steps), c.iterations / c.steps,
                 c.factorisations / c.steps);
@@ -149,13 +149,13 @@ void causes(Options const& o, Combination const& combination) {
   std::fflush(stdout);
 }
 
-void variants(Options o, Combination const& combination) {
+void variants(LinkSettings o, LinksOnPins const& links) {
   std::vector<lockstep::Counts> runs;
   double const speed = o.speed;
   double iteration = 0.0, factorisation = 0.0;
   for (double const by : {0.0, 1e-5, 1e-4, 1e-3, 1e-2, -1e-2, -1e-4, -1e-3}) {
     o.speed = speed * (1.0 + by);
-    Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
+    Built const built = built_of(o, links);
     AnyModel const& model = built.vehicle.model;
     State x = model.reference_state();
     Simulation<GeneralisedAlpha> run =
@@ -166,28 +166,27 @@ void variants(Options o, Combination const& combination) {
     iteration = p.evaluation + p.residual + p.solution;
     factorisation = p.writing + p.factorisation;
   }
-  lockstep::print("`" + combination.links + "` on `" + combination.pins + "`, speeds", runs, iteration, factorisation);
+  lockstep::print("`" + links.body.name + "` on `" + links.policy + "`, speeds", runs, iteration, factorisation);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  Options o;
+  LinkSettings o;
   o.step = 1e-3;
   o.rho = 0.5;
   o.speed = 30.0;
   o.end_time = 4.0;
   bool of_variants = false, of_causes = false;
-  o.links.clear();
+  std::string body, policy;
   o.masses = m113::with_steel_links(o.masses);
-  o.files = POLYBODY_TRACK_LINK_FILES;
   for (int i = 1; i + 1 < argc; i += 2) {
     std::string const name = argv[i], value = argv[i + 1];
-    if (name == "--links")
-      o.links = value;
-    else if (name == "--pins")
-      o.pins = value;
+    if (name == "--body")
+      body = value;
+    else if (name == "--policy")
+      policy = value;
     else if (name == "--until")
       o.end_time = std::stod(value);
     else if (name == "--speed")
@@ -198,17 +197,16 @@ int main(int argc, char** argv) {
       of_variants = value != "0";
     else
       return std::printf(
-                 "bench_vehicle: unknown option %s. The options are --links, --pins, --until, --speed, --causes and "
+                 "bench_vehicle: unknown option %s. The options are --body, --policy, --until, --speed, --causes and "
                  "--variants.\n",
                  name.c_str()),
              1;
   }
   auto const each = [&](auto&& f) {
-    for (std::size_t k = 0; k < all_links.size(); ++k) {
-      if (!o.links.empty() && o.links != all_links[k]) continue;
-      for (Combination const& c : combinations_of[k]())
-        if (c.refusal.empty() && (o.pins.empty() || o.pins == c.pins)) f(o, c);
-    }
+    for (LinksOnPins const& links : all_links())
+      if (links.refusals.front().empty() && (body.empty() || body == links.body.name) &&
+          (policy.empty() || policy == links.policy))
+        f(o, links);
   };
   if (of_causes) {
     std::printf(

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <polybody/compare/equal_error.hpp>
-
 #include "chapter2.hpp"
-#include "support/command_line.hpp"
+#include "support/combination_table.hpp"
 
 namespace chapter2 {
 
@@ -29,38 +27,16 @@ struct AnyMechanism {
   std::function<Vec3(State const&)> tip;  // position of the tip [m]
 };
 
-enum class MeshKind { none, elements, modes };
-
-// Body formulation of one value of --body.
-struct BodyName {
-  std::string name;
-  std::string model;  // physical model, for the comparison at equal error
-  MeshKind mesh = MeshKind::elements;
-};
-
-struct Problem;
+using combinations::BodyName;
+using combinations::MeshKind;
+using combinations::NamedIntegrator;
 using MakeMechanism = std::function<AnyMechanism(Setup const&, FormulationMesh const&)>;
 
-// A combination of body, policy and integrator.
-struct Combination {
-  // Sentence with which Model::connect or simulate refuses the combination; empty if the combination exists.
-  std::string refusal = {};
-  // Adds the problem under this combination to a study, with the name of the formulation and its mesh.
-  std::function<void(EqualErrorStudy&, Problem const&, std::string const&, FormulationMesh const&)> add = {};
-};
 // A body formulation with one policy of the joint at its first end.
-struct BodyOnPolicy {
-  BodyName body;
-  std::string policy;
+struct BodyOnPolicy : combinations::BodyOnPolicy {
   MakeMechanism make = {};
-  std::vector<Combination> by = {};  // one for each of `integrators`
 };
 
-template <class I>
-struct NamedIntegrator {
-  char const* name;
-  I integrator;
-};
 inline auto const integrators = std::tuple(
     NamedIntegrator<GeneralisedAlpha>{"generalised-alpha", {.rho_inf = 0.8}}, NamedIntegrator<HhtAlpha>{"hht", {}},
     NamedIntegrator<Newmark>{"newmark", {}}, NamedIntegrator<Radau>{"radau", {}},
@@ -79,17 +55,13 @@ std::vector<BodyOnPolicy> elastic_line_beams(Mechanism);
 std::vector<BodyOnPolicy> continuum_beams(Mechanism);
 
 // Name of the case, and options of the cases 'run', 'compare' and 'combinations'. An empty list selects the defaults.
-struct FormulationOptions {
+struct FormulationOptions : combinations::Selection {
+  FormulationOptions();
+
   std::string which = "all";
-  std::vector<std::string> bodies, policies, integrators;
   Index elements = 10;
-  double step = 5e-3;  // [s]
-  std::vector<Index> meshes{5, 10, 20, 40, 80, 160, 320}, modes{1, 2, 4, 8};
-  std::vector<double> steps{1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4};  // [s]
-  std::vector<double> tolerances{1e-4, 1e-5, 1e-6, 1e-7};           // of adams
-  std::vector<double> errors{1e-1, 1e-2, 1e-3, 1e-4};               // relative to the span of the output
-  std::string stiffness;                                            // name of Table 2.1
-  bool list = false;
+  double step = 5e-3;     // [s]
+  std::string stiffness;  // name of Table 2.1
 
   Stiffness const& chosen_stiffness() const;
   // True for --list and the cases of this file.

@@ -232,6 +232,71 @@ void run_cases(Options const& o) {
     if (o.which == "all" || o.which == c.name) run_case<B>(o, c);
 }
 
+// Largest distance of a node between the two meshes during the ramp, for densities and ramps that the thesis does not
+// give.
+void bands(Options const& o) {
+  std::printf("\nLargest distance of a node between the meshes, by density and duration of the ramp:\n\n");
+  for (double const density : {1000.0, 2700.0, 7850.0})
+    for (double const ramp : {4.5, 6.0, 10.0, 15.0})
+      for (Stiffness const& s : {high, medium, low}) {
+        RobotArm<planar::Lrvf> arm(bar(s, density), o.elements, ramp);
+        State x = arm.model.reference_state();
+        double gap = 0.0;
+        for (auto const& now :
+             simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = ramp, .step = o.step}))
+          gap = std::max(gap, mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm)).largest_gap);
+        say("density " + number(density) + " and ramp " + number(ramp), s.name.c_str(), gap, "m");
+      }
+}
+
+// The arm of a bar, for EqualErrorStudy.
+struct StudiedArm {
+  Problem const& problem;
+  Bar spec;
+
+  template <class F>
+  auto operator()(F const& f) const {
+    using Arm = RobotArm<typename F::BodyType, typename F::PolicyType>;
+    Arm arm(f.body(spec), problem.setup.ramp, 0.0, f.policy);
+    State const start = arm.model.reference_state();
+    auto const tip = arm.arm.at(length);
+    using M = typename Arm::Model;
+    auto const lag = [tip, value = problem.output_value](M const& m, State const& x) {
+      return value(x.t, position(m, x, tip));
+    };
+    return Scenario<M>{std::move(arm.model),
+                       start,
+                       {.end_time = problem.end_time, .step = 1e-3 * problem.end_time, .max_step_halvings = 6},
+                       {{problem.output, lag}}};
+  }
+};
+
+// Converged differences between the beam with shear and rotary inertia and the cable with Green strain, in four parts:
+// rotary inertia, shear, formulation of the same equations, strain measure.
+void split(Options const& o, Problem const& problem) {
+  EqualErrorStudy study({.elements = o.meshes, .steps = o.steps, .errors = {1e-1}, .repeats = 1});
+  Bar const whole = bar(problem.setup.stiffness, problem.setup.density);
+  Bar slender = whole;
+  slender.constants->rotary_inertia = 1e-6 * whole.constants->rotary_inertia;
+  Bar unsheared = slender;
+  unsheared.constants->GA = 1e3 * whole.constants->GA;
+  using Rotations = Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>;
+  GeneralisedAlpha const implicit{.rho_inf = 0.8};
+  study.add(StudiedArm{problem, whole}, Rotations{"LRVF", {}, implicit}, {.model = "LRVF"});
+  study.add(StudiedArm{problem, slender}, Rotations{"without rotary inertia", {}, implicit},
+            {.model = "LRVF without rotary inertia"});
+  study.add(StudiedArm{problem, unsheared}, Rotations{"without shear", {}, implicit},
+            {.model = "LRVF without rotary inertia and shear"});
+  study.add(
+      StudiedArm{problem, whole},
+      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"engineering", {}, implicit},
+      {.model = "cable of engineering strain"});
+  study.add(StudiedArm{problem, whole},
+            Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"Green", {}, implicit},
+            {.model = "cable of Green strain"});
+  std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n" << study.run();
+}
+
 Problem problem_of(Options const& o) {
   double const ramp = 4.5;
   return {.mechanism = Mechanism::arm,
@@ -249,8 +314,9 @@ int main(int argc, char** argv) {
   o.stiffness = medium.name;
   CommandLine line{
       "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
-  add_formulation_options(line, o,
-                          {"angle", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh", "energy"});
+  add_formulation_options(
+      line, o,
+      {"angle", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh", "energy", "bands", "split"});
   line.not_negative(
       "--until", &o.end_time,
       "end of the run [s]; 0: the end of the ramp, or 1.5 times the ramp with run, compare and equal-mesh");
@@ -275,6 +341,8 @@ int main(int argc, char** argv) {
     if (o.body == "rigid") run_cases<planar::Rigid>(o);
     if (o.which == "all" || o.which == "equal-mesh") equal_meshes(o);
     if (o.which == "all" || o.which == "energy") energies(o);
+    if (o.which == "all" || o.which == "bands") bands(o);
+    if (o.which == "split") split(o, problem_of(o));
   } catch (Error const& e) {
     std::cerr << "robot_arm: " << e.what() << '\n';
     return 1;

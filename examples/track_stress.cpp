@@ -1,7 +1,7 @@
 // Stress of a track link (Chapter 4, Figures 4.3 to 4.12): decoupled, after a run with rigid links, and coupled, in
 // runs with flexible links.
-//   track_stress --links ffr --speed 80
-//   track_stress --links ffr --pins recursive --turn curve
+//   track_stress --body ffr --speed 80
+//   track_stress --body ffr --policy joint-coordinates --turn curve     # --list: the combinations
 //   track_stress --compare
 //   track_stress --compare matrix
 //   track_stress --compare surface
@@ -12,10 +12,8 @@
 #include <map>
 
 #include "m113/link_strain.hpp"
-#include "support/command_line.hpp"
 #include "support/vehicle_film.hpp"
 #include "track_stress/ensemble.hpp"
-#include "track_stress/formulations.hpp"
 #include "track_stress/measures.hpp"
 
 using namespace chapter4;
@@ -39,7 +37,7 @@ class Cache {
     o.end_time = end_time;
     if (!runs_.empty()) o.film = nullptr;
     if (o.bands) return runs_.emplace(key, runs_of_settings(o)).first->second;
-    SettingRuns as_given{"as given", o, run(o, {on_pins(rigid_links()), on_pins(cable_links())})};
+    SettingRuns as_given{"as given", o, run(o, {combination(o, "rigid"), combination(o, "ancf")})};
     return runs_.emplace(key, std::vector{std::move(as_given)}).first->second;
   }
 
@@ -299,15 +297,19 @@ void show(Options const& o, StressRuns const& r) {
 }
 
 void single(Options const& o) {
-  Combination const c = combination_asked(o);
-  require_driveable(o, c);
-  if (o.restart) return restart(o, c);
-  StressRuns const runs = run(o, {c});
+  std::vector<Combination> const chosen = selected(o, "ancf");
+  if ((o.restart || o.halve) && chosen.size() > 1)
+    throw InvalidInput{"--restart and --halve run one combination, but ", ErrorValue{chosen.size()}, " are selected."};
+  if (o.restart) return restart(o, chosen.front());
+  StressRuns const runs = run(o, chosen);
   if (!o.halve) return show(o, runs);
   Options half = o;
   half.step = 0.5 * o.step;
-  compare_steps(o, runs, run(half, {c}));
+  compare_steps(o, runs, run(half, chosen));
 }
+
+// Links of --compare matrix.
+std::vector<std::string> const matrix_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 
 // Results of the run of one combination; strain, force and constraint violation from the plateau on.
 struct Cell {
@@ -330,8 +332,8 @@ Cell cell_of(Options const& o, Combination const& c) {
                   .gap = span_of(r.times(0), r.history(0, "largest joint gap [m]"), from).most,
                   .energy = r.outcomes[0].relative,
                   .turning = yaw_rate(r, 0, from)};
-  std::printf("%-10s %-10s %6td %5td %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f", c.links.c_str(), c.pins.c_str(),
-              one.problem_size.velocities, one.problem_size.rows, one.cpu,
+  std::printf("%-10s %-17s %6td %5td %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f", c.links.body.name.c_str(),
+              c.links.policy.c_str(), one.problem_size.velocities, one.problem_size.rows, one.cpu,
               double(one.run.iterations) / double(one.run.steps),
               double(one.run.factorisations) / double(one.run.steps), cell.forward, 1e5 * cell.strain,
               1e-3 * cell.force, cell.gap, 1e2 * cell.energy);
@@ -361,7 +363,7 @@ void show_spreads(Options const& o, std::vector<Cell> const& cells) {
       1e3 * spread(cells, &Cell::forward), 1e2 * spread(cells, &Cell::strain) / mean, 1e2 * energy);
   if (!o.turn.empty())
     std::printf("Yaw rates within %.2f %% of that of %s links.\n",
-                1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), all_links.front().c_str());
+                1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), matrix_links.front().c_str());
 }
 
 // Runs every combination of links and pins.
@@ -371,21 +373,24 @@ void matrix(Options o) {
       "%g rad/s, %g s, steps of %g ms, rho %g; pins of %g N/m where they yield; from half of the run on, or the "
       "plateau: strain of left link %d (low pass %g Hz), largest force in its front pin, largest gap of a pin\n",
       o.speed, o.end_time, 1e3 * o.step, o.rho, m113::pin_stiffness, watched_link, o.cut_off);
-  std::printf("%-10s %-10s %6s %5s %8s %6s %6s %11s %9s %9s %9s %9s%s\n", "links", "pins", "speeds", "rows", "CPU [s]",
+  std::printf("%-10s %-17s %6s %5s %8s %6s %6s %11s %9s %9s %9s %9s%s\n", "links", "pins", "speeds", "rows", "CPU [s]",
               "iter.", "fact.", "forward [m]", "strain e-5", "force [kN]", "gap [m]", "energy [%]",
               o.turn.empty() ? "" : "    yaw [rad/s]");
   std::vector<Cell> cells;
   int refused = 0;
-  for (auto const of_links : combinations_of)
-    for (Combination const& c : of_links()) {
-      std::string const why = refusal(o, c);
-      if (why.empty()) {
-        cells.push_back(cell_of(o, c));
-        continue;
-      }
-      ++refused;
-      std::printf("%-10s %-10s cannot be: %s\n", c.links.c_str(), c.pins.c_str(), why.c_str());
+  std::size_t const integrator = combination(o, "rigid").integrator;
+  for (LinksOnPins const& links : all_links()) {
+    if (std::find(matrix_links.begin(), matrix_links.end(), links.body.name) == matrix_links.end()) continue;
+    std::string const why = o.turn.empty() || links.turns || !links.refusals[integrator].empty()
+                                ? links.refusals[integrator]
+                                : "The slope vector that neighbouring links share at a pin is constant in world axes.";
+    if (why.empty()) {
+      cells.push_back(cell_of(o, {links, integrator}));
+      continue;
     }
+    ++refused;
+    std::printf("%-10s %-17s cannot be: %s\n", links.body.name.c_str(), links.policy.c_str(), why.c_str());
+  }
   std::printf("%zu run, %d cannot be.", cells.size(), refused);
   show_spreads(o, cells);
 }
@@ -402,6 +407,12 @@ void compare_terms(Options o) {
       {"no Coriolis forces, 2 S1 q'", {.coriolis = false}},
       {"no centrifugal forces by the deformation, S2 q", {.centrifugal = false}},
       {"no centrifugal forces on the link as it is, I0 w", {.spin = false}},
+      {"only m_fr q_r'' and I0 w, assumptions 1 to 4",
+       {.onto_frame = false,
+        .deformed_inertia = false,
+        .frame_velocities = false,
+        .coriolis = false,
+        .centrifugal = false}},
       {"none of these",
        {.coupling = false,
         .onto_frame = false,
@@ -414,7 +425,7 @@ void compare_terms(Options o) {
               o.speed, o.end_time, 1e3 * o.step, o.rho, watched_link);
   std::printf("%-52s %10s %9s %9s %9s %10s\n", "floating frames with", "strain e-5", "off [%]", "raw [%]", "bend. [%]",
               "energy [%]");
-  Combination const c = on_pins(modal_links(), o.pins);
+  Combination const c = combination(o, "ffr", o.policy());
   StressRuns whole;
   for (auto const& [name, terms] : variants) {
     o.terms = terms;
@@ -439,7 +450,7 @@ void compare_terms(Options o) {
 void surface_stress(Options o) {
   o.surface = true;
   o.contacts = m113::ContactsAct::at_their_places;
-  StressRuns const r = run(o, {on_pins(rigid_links()), on_pins(finite_element_links(), o.pins)});
+  StressRuns const r = run(o, {combination(o, "rigid"), combination(o, "fe", o.policy())});
   report(o, r);
   double const from = plateau(r.times(0));
   std::printf(
@@ -473,6 +484,12 @@ void surface_stress(Options o) {
   }
 }
 
+std::vector<Combination> of_bodies(Options const& o, std::vector<std::string> const& bodies) {
+  std::vector<Combination> all;
+  for (std::string const& body : bodies) all.push_back(combination(o, body));
+  return all;
+}
+
 void side_by_side(Options const& o, std::vector<Combination> const& combinations) {
   StressRuns const r = run(o, combinations);
   write_report(r.comparison, o.out / "comparison", !o.no_plot);
@@ -486,13 +503,25 @@ void side_by_side(Options const& o, std::vector<Combination> const& combinations
        "strain_filtered");
 }
 
+// Throws InvalidInput for options that the selected runs do not have.
+void check(Options const& o) {
+  bool const own_pins = o.compare != "terms" && o.compare != "surface" && !o.compare.empty();
+  if (is_of_combinations(o, o.compare)) return;
+  if ((!o.selection.bodies.empty() && (!o.figure.empty() || !o.compare.empty())) ||
+      (!o.selection.policies.empty() && (!o.figure.empty() || own_pins)))
+    throw InvalidInput(
+        "--figure and --compare have their own links and pins; only --compare terms and --compare surface accept "
+        "--policy. Omit --body and --policy, or use single runs or --compare combinations.");
+}
+
 // A film shows one run, or rigid links beside cables.
 void open_film(Options& o) {
   if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
   if (o.film_file.empty()) return;
-  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.halve || o.restart)
+  if (o.compare == "matrix" || o.compare == "terms" || o.compare == "surface" || o.compare == "stiffness" || o.halve ||
+      o.restart)
     throw InvalidInput(
-        "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --links, "
+        "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --body, "
         "--figure, --compare links, --compare pair and --compare ensemble.");
   o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 4: stress of its links");
   if (!o.figure.empty()) o.film_until = std::min(o.end_time, 10.0);
@@ -502,25 +531,23 @@ void open_film(Options& o) {
 
 int main(int argc, char** argv) {
   Options o;
-  o.masses = m113::with_steel_links();
-  o.step = 1e-3;
-  o.rho = 0.5;
-  o.speed = m113::fast_sprocket_velocities[0];
-  o.out = "out/track_stress";
-  o.files = POLYBODY_TRACK_LINK_FILES;
+  double step = 0.0;
   std::string contacts = "middle";
   CommandLine line{
       "Stress of a track link after a run with rigid links (decoupled) and in runs with flexible links (Chapter 4)."};
-  line.one_of("--links", &o.links, all_links, "body formulation of the links");
-  line.one_of("--pins", &o.pins, all_pins,
-              "joint policy of the pins; if omitted, linear for ancf, beam and continuum, otherwise constraint");
-  line.not_negative("--elements", &o.elements,
-                    "elements of a flexible link except fe; 0: one, or two in a floating frame");
-  line.one_of("--compare", &o.compare, {"links", "pair", "matrix", "terms", "surface", "ensemble"},
+  add_combination_options(
+      line, o,
+      {.body = "body formulation of the links, or a list such as rigid,ffr (default: ancf)",
+       .policy = "policy of the pins, or a list (default: ancf-linear for ancf, ancf-engineering, beam and continuum, "
+                 "else constraint)"});
+  line.one_of("--compare", &o.compare,
+              {"links", "pair", "matrix", "terms", "surface", "ensemble", "stiffness", "combinations", "steps"},
               "links: all links except fe, each on its usual pins; pair: rigid and ancf; matrix: every link on "
               "every pin; terms: ffr without "
               "parts of its equations; surface: stress at nodes of fe, decoupled and coupled; "
-              "ensemble: rigid and ancf with other values of data that the thesis does not give",
+              "ensemble: rigid and ancf with other values of data that the thesis does not give; "
+              "stiffness: rigid and ancf with links of other stiffnesses; combinations: the "
+              "selected ones at equal error; steps: ten steps of every combination",
               "links");
   line.one_of("--contacts", &contacts, {"middle", "places"},
               "points of a link at which contact forces act: all at its middle, or each at its contact point");
@@ -531,7 +558,10 @@ int main(int argc, char** argv) {
   line.option("--figure", &o.figure, "figure 4.3 to 4.12 of the thesis, or all");
   line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.positive("--until", &o.end_time, "end of the run [s]");
-  line.positive("--step", &o.step, "time step [s]");
+  line.positive(
+      "--step", &step,
+      "step [s], for adams and dormand-prince the longest step; if omitted, 1 ms, or for runge-kutta a step at "
+      "which the pins are stable");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.positive("--cut-off", &o.cut_off, "cut-off frequency of the low pass [Hz]");
   line.one_of("--recovery", &o.recovery, {"static", "vibrating"},
@@ -559,6 +589,9 @@ int main(int argc, char** argv) {
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
+    complete(o, step);
+    check(o);
+    if (is_of_combinations(o, o.compare)) return run_combinations(o, o.compare) ? 0 : 1;
     open_film(o);
     fs::create_directories(o.out);
     if (!o.compare.empty() && o.compare != "ensemble") o.start = std::make_shared<m113::TrackStart const>(settled(o));
@@ -572,11 +605,12 @@ int main(int argc, char** argv) {
       surface_stress(o);
     else if (o.compare == "ensemble")
       ensemble(o);
+    else if (o.compare == "stiffness")
+      compare_stiffnesses(o);
     else if (o.compare == "pair")
-      side_by_side(o, {on_pins(rigid_links()), on_pins(cable_links())});
+      side_by_side(o, of_bodies(o, {"rigid", "ancf"}));
     else if (o.compare == "links")
-      side_by_side(o, {on_pins(rigid_links()), on_pins(cable_links()), on_pins(modal_links()),
-                       on_pins(rotation_links()), on_pins(beam_links()), on_pins(continuum_links())});
+      side_by_side(o, of_bodies(o, {"rigid", "ancf", "ffr", "lrvf", "beam", "continuum"}));
     else
       single(o);
     if (o.film && o.film->scenes() > 0)

@@ -1,8 +1,10 @@
-// The tracked vehicle of Chapter 3 (Figures 3.6 to 3.15, Table 3.4) with its tracks under five joint formulations.
-//   tracked_vehicle --track penalty --until 3
+// The tracked vehicle of Chapter 3 (Figures 3.6 to 3.15, Table 3.4) with its tracks under five joint formulations, and
+// under every combination of links, pins and integrator.
+//   tracked_vehicle --policy penalty --until 3
 //   tracked_vehicle --compare
 //   tracked_vehicle --figure 3.11
-//   tracked_vehicle --integrator adams --until 0.5
+//   tracked_vehicle --body ffr --policy bushing --integrator adams --until 0.5     # --list: the combinations
+//   tracked_vehicle --compare combinations --body rigid,lrvf --until 0.3           # at equal error
 //   tracked_vehicle --figure 3.11 --viewer build/release/polybody_viewer.html
 
 #include <map>
@@ -10,7 +12,6 @@
 
 #include <polybody/polybody.hpp>
 
-#include "support/command_line.hpp"
 #include "support/vehicle_film.hpp"
 #include "tracked_vehicle/measures.hpp"
 #include "tracked_vehicle/pins.hpp"
@@ -18,11 +19,6 @@
 using namespace chapter3;
 
 namespace {
-
-void warn_of_fast_drive(Options o) {
-  if (o.step == 0.0) o.step = implicit_step;
-  warn_of_drive(o);
-}
 
 // Runs of one program call. Figures with the same settings share a run.
 class RunsMade {
@@ -32,11 +28,11 @@ class RunsMade {
     Runs all;
     std::vector<Comparison> apart;
     for (Pins const& pins : formulations) {
-      if (o.left != o.right && !pins.cannot_turn.empty()) {
-        if (formulations.size() == 1) throw InvalidInput(pins.cannot_turn);
-        std::cout << pins.cannot_turn << '\n';
+      if (o.left != o.right && !pins.combination.links.turns && formulations.size() > 1) {
+        std::cout << pins.name << " is omitted, because tracks of cables cannot turn.\n";
         continue;
       }
+      require_turning(o, pins.combination.links);
       Runs const& one = made(o, pins);
       apart.push_back(one.comparison);
       all.outcomes.insert(all.outcomes.end(), one.outcomes.begin(), one.outcomes.end());
@@ -47,10 +43,10 @@ class RunsMade {
   }
 
  private:
-  // Key of a run within one call: pins, suspension and step.
-  using Key = std::tuple<std::string, bool, double>;
+  // Key of a run within one call: pins, suspension, preload and step.
+  using Key = std::tuple<std::string, bool, double, double>;
   Runs const& made(Options const& o, Pins const& pins) {
-    Key const key{pins.name, o.suspension, o.step};
+    Key const key{pins.name, o.suspension, o.preload, o.step};
     auto const found = made_.find(key);
     if (found != made_.end()) return found->second;
     Options mine = o;
@@ -61,7 +57,7 @@ class RunsMade {
   // A film of several formulations shows only rigid links on ideal pins and cables.
   static bool filmed(Options const& o, Pins const& pins) {
     bool const alone = o.figure.empty() && o.compare.empty();
-    return o.suspension && (alone || pins.name == ideal_pins().name || pins.name == cable_pins().name);
+    return o.suspension && (alone || pins.name == "constraint" || pins.name == "ancf");
   }
 
   std::map<Key, Runs> made_;
@@ -84,10 +80,10 @@ void table_3_4(Options const& o) {
            {"constraints", double(c.constraints), 0}},
           std::string("thesis: ") + thesis);
   };
-  count("pin joint", ideal_pins().count(o), "1092, 168, 924");
-  count("penalty", penalty_pins(o.penalty).count(o), "1092, 798, 294");
-  count("bushing", bushing_pins(o.penalty).count(o), "1092, 798, 294");
-  count("ANCF", cable_pins().count(o), "1227, 1060, 167");
+  count("pin joint", ideal_pins(o).count(o), "1092, 168, 924");
+  count("penalty", penalty_pins(o, o.spring_pins).count(o), "1092, 798, 294");
+  count("bushing", bushing_pins(o).count(o), "1092, 798, 294");
+  count("ANCF", cable_pins(o).count(o), "1227, 1060, 167");
   std::cout
       << "  The 1227 ANCF coordinates of the thesis are those of 29 bodies with 7 and 128 links with 8. This vehicle "
          "has 28 such bodies,\n"
@@ -112,6 +108,8 @@ class Figures {
     if (wanted("3.8") || wanted("3.9") || wanted("3.10") || !o_.compare.empty()) formulations();
     if (wanted("3.11") || wanted("3.12")) forces(m113::pin_stiffness, "11", "12");
     if (wanted("3.13") || wanted("3.14")) forces(m113::soft_pin_stiffness, "13", "14");
+    if (wanted("3.11") || wanted("3.12") || wanted("3.13") || wanted("3.14"))
+      for (auto* const pins : {ideal_pins, cable_pins}) force_spread(pins);
     if (wanted("3.15")) gaps();
   }
 
@@ -134,7 +132,7 @@ class Figures {
   void drop() {
     Options bare = o_;
     bare.suspension = false;
-    Runs const with = runs_(o_, {ideal_pins()}), without = runs_(bare, {ideal_pins()});
+    Runs const with = runs_(o_, {ideal_pins(o_)}), without = runs_(bare, {ideal_pins(o_)});
     Figure f{.title = "Figure 3.7: chassis vertical displacement", .x_label = "t [s]", .y_label = "displacement [m]"};
     f.curves.push_back(curve("with suspension", with.times(0), with.history(0, "vertical displacement [m]"), 0));
     f.curves.push_back(
@@ -147,8 +145,8 @@ class Figures {
 
   // Positions, speeds and paths of all formulations.
   void formulations() {
-    Runs const all = runs_(o_, {ideal_pins(), penalty_pins(m113::pin_stiffness), bushing_pins(o_.penalty), cable_pins(),
-                                joint_coordinate_pins()});
+    Runs const all = runs_(o_, {ideal_pins(o_), penalty_pins(o_, m113::pin_stiffness), bushing_pins(o_), cable_pins(o_),
+                                joint_coordinate_pins(o_)});
     std::size_t const count = all.comparison.runs.size();
     if (wanted("3.8"))
       over_time(all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", "8");
@@ -181,7 +179,7 @@ class Figures {
 
   // Forces in the watched pin, unfiltered (a) and filtered (b), with penalties of this `stiffness` [N/m].
   void forces(double stiffness, std::string const& longitudinal, std::string const& vertical) {
-    Runs const r = runs_(o_, {ideal_pins(), penalty_pins(stiffness), cable_pins()});
+    Runs const r = runs_(o_, {ideal_pins(o_), penalty_pins(o_, stiffness), cable_pins(o_)});
     for (auto const& [number, output, what] :
          {std::tuple(longitudinal, "joint force x [N]", "longitudinal"), {vertical, "joint force z [N]", "vertical"}}) {
       if (!wanted("3." + number)) continue;
@@ -193,8 +191,19 @@ class Figures {
     for (std::size_t k = 0; k < r.comparison.runs.size(); ++k) force_line(lines_, r, k);
   }
 
+  // Difference of the forces in two runs with the same pins, the second with a preload that differs in the last place.
+  void force_spread(Pins (*pins_of)(Options const&)) {
+    Options perturbed = o_;
+    perturbed.film = nullptr;
+    perturbed.preload = std::nextafter(o_.preload, std::numeric_limits<double>::infinity());
+    Pins const pins = pins_of(o_);
+    Runs const first = runs_(o_, {pins}), second = runs_(perturbed, {pins_of(perturbed)});
+    if (first.times(0).back() >= 4.0)
+      lines_("30 Hz force, " + pins.name + " perturbed", force_differences(first, 0, second, 0));
+  }
+
   void gaps() {
-    Runs const r = runs_(o_, {penalty_pins(m113::pin_stiffness), penalty_pins(m113::soft_pin_stiffness)});
+    Runs const r = runs_(o_, {penalty_pins(o_, m113::pin_stiffness), penalty_pins(o_, m113::soft_pin_stiffness)});
     Figure f{.title = "Figure 3.15: joint constraint violation, penalty method",
              .x_label = "t [s]",
              .y_label = "gap [mm]",
@@ -226,18 +235,19 @@ void show(Options const& o, Runs const& r) {
 }
 
 void halve(Options const& o) {
-  if (o.integrator == "adams" || o.integrator == "dormand-prince")
+  Pins const pins = ideal_pins(o);
+  if (has_step_control(pins.combination))
     throw InvalidInput(
         "--halve needs an integrator of fixed steps, but this one controls its step. Change --tolerance instead.");
-  if (o.integrator == "rk" && o.step == 0.0)
-    throw InvalidInput("--halve with --integrator rk needs a --step at which the pins are stable, such as 1e-4 s.");
-  Options half = o, whole = o;
-  if (o.step == 0.0) whole.step = implicit_step;
-  half.step = 0.5 * whole.step;
+  if (integrator_name(pins.combination) == "runge-kutta" && o.default_step)
+    throw InvalidInput(
+        "--halve with --integrator runge-kutta needs a --step at which the pins are stable, such as 1e-4 s.");
+  Options half = o;
+  half.step = 0.5 * o.step;
   RunsMade runs;
-  Runs const coarse = runs(whole, {ideal_pins()}), fine = runs(half, {ideal_pins()});
+  Runs const coarse = runs(o, {pins}), fine = runs(half, {pins});
   auto const x = [](Runs const& r) { return r.history(0, "forward position [m]").back(); };
-  std::vector<Value> numbers{{"step", 1e3 * whole.step, 3, "ms"},
+  std::vector<Value> numbers{{"step", 1e3 * o.step, 3, "ms"},
                              {"half", 1e3 * half.step, 3, "ms"},
                              {"forward", x(coarse), 4, "m"},
                              {"apart", 1e3 * std::abs(x(fine) - x(coarse)), 3, "mm"}};
@@ -247,47 +257,48 @@ void halve(Options const& o) {
   Lines{}("halved", numbers);
 }
 
-void single(Options const& o) {
-  if (o.halve) return halve(o);
-  std::map<std::string, Pins> const formulations{{"constraint", ideal_pins()},
-                                                 {"penalty", penalty_pins(o.penalty)},
-                                                 {"bushing", bushing_pins(o.penalty)},
-                                                 {"ancf", cable_pins()},
-                                                 {"recursive", joint_coordinate_pins()}};
-  show(o, RunsMade{}(o, {formulations.at(o.track)}));
+// Throws InvalidInput for options that the selected runs do not have.
+void check(Options const& o) {
+  bool const selects = !o.selection.bodies.empty() || !o.selection.policies.empty();
+  if (selects && (!o.figure.empty() || o.compare == "pins" || o.halve))
+    throw InvalidInput(
+        "--figure, --compare pins and --halve have their own links and pins. Omit --body and --policy, or use single "
+        "runs or --compare combinations.");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options o;
-  CommandLine line{"The tracked vehicle of Chapter 3 with its tracks under five joint formulations."};
-  line.one_of("--track", &o.track, {"constraint", "penalty", "bushing", "ancf", "recursive"},
-              "formulation of the pins");
-  line.one_of("--compare", &o.compare, {"pins", "matrix"},
-              "pins: all formulations, with a report; matrix: names the program that runs every link on every pin",
-              "pins");
+  CommandLine line{
+      "The tracked vehicle of Chapter 3: its figures, and runs of every combination of links, pins and integrator."};
+  double step = 0.0;
+  add_combination_options(
+      line, o,
+      {.body = "body formulation of the links, or a list such as rigid,ffr (default: rigid)",
+       .policy = "policy of the pins, or a list (default: ancf-linear for cables and beams of ANCF, else constraint)"});
+  line.one_of(
+      "--compare", &o.compare, {"pins", "combinations", "steps"},
+      "pins: five formulations of the thesis and of joint coordinates, with a report; combinations: the selected "
+      "ones at equal error; steps: ten steps of every combination",
+      "pins");
   line.one_of("--figure", &o.figure,
               {"3.6", "3.7", "3.8", "3.9", "3.10", "3.11", "3.12", "3.13", "3.14", "3.15", "table", "all"},
               "figure of the thesis with its numbers, Table 3.4, or all");
   line.positive("--until", &o.end_time, "end of the run [s]");
-  line.one_of("--integrator", &o.integrator, {"alpha", "hht", "radau", "adams", "dormand-prince", "rk"},
-              "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
-              "projected");
   line.positive(
-      "--step", &o.step,
-      "step [s], for adams and dormand-prince the longest step; if omitted, 0.5 ms, or for rk a step at which "
-      "the pins are stable");
-  line.positive("--tolerance", &o.tolerance,
-                "tolerance of Newton's method (if omitted, 1e-5); for adams and dormand-prince, of the error of a step "
-                "(if omitted, 1e-6)");
+      "--step", &step,
+      "step [s], for adams and dormand-prince the longest step; if omitted, 0.5 ms, or for runge-kutta a step "
+      "at which the pins are stable");
   line.flag("--halve", &o.halve, "compares ideal pins at this step and at half of this step");
   line.option("--speed", &o.speed, "speed of the sprockets after 8 s [rad/s]");
   line.one_of("--turn", &o.turn, {"pivot", "curve"},
               "pivot: the right track runs backwards; curve: the right track runs at 0.8 of the speed");
   line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
   line.option("--preload", &o.preload, "preload of the tensioners [N]");
-  line.positive("--penalty", &o.penalty, "stiffness of penalty pins and bushings [N/m]");
+  line.positive("--penalty", &o.spring_pins, "stiffness of penalty pins and bushings [N/m]");
+  line.flag("--shared-contacts", &o.shared_contacts,
+            "stiffness and damping of Table 3.2 belong to all contact points of a link on one body, not to each point");
   line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.flag("--bumps", &o.bumps, "ground with three bumps");
@@ -303,21 +314,20 @@ int main(int argc, char** argv) {
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
-    if (o.compare == "matrix")
-      throw InvalidInput(
-          "This program has rigid links on all pins except ancf, and cables on the pins ancf only. Every link on every "
-          "pin, on the same vehicle, "
-          "is driven by track_stress --compare matrix; give it --speed 25 --rho 0.8 --step 5e-4 for the "
-          "settings of Chapter 3.");
+    complete(o, step);
+    check(o);
+    if (is_of_combinations(o, o.compare)) return run_combinations(o, o.compare) ? 0 : 1;
     if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
     if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 3");
     fs::create_directories(o.out);
-    warn_of_fast_drive(o);
+    warn_of_drive(o);
     if (o.figure == "table" || o.figure == "all") table_3_4(o);
     if (!o.figure.empty() || !o.compare.empty())
       Figures(o).draw_all();
+    else if (o.halve)
+      halve(o);
     else
-      single(o);
+      show(o, RunsMade{}(o, selected_pins(o)));
     if (o.film && o.film->scenes() > 0) o.film->write(o.film_file);
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';

@@ -43,6 +43,7 @@ struct Settings {
   int cut = 0;
   int elements = 0;  // elements of a flexible link; 0: the least number of its formulation
   m113::ContactsAct contacts = m113::ContactsAct::in_the_middle;
+  bool shared_contacts = false;                        // as `VehicleOptions::shared_contacts`
   std::shared_ptr<m113::TrackStart const> start = {};  // initial positions of the links; null: each run computes them
   double animate = 0.0;                  // interval between states of a ParaView animation [s]; 0: no animation
   std::shared_ptr<Film> film = nullptr;  // film with a scene for each run; null: no film
@@ -57,6 +58,8 @@ struct Settings {
 BumpCourse course(bool bumps);
 m113::VehicleOptions vehicle_options(Settings const& s);
 GeneralisedAlpha integrator(Settings const& o);
+// Names of the outputs of every run, without units.
+std::vector<std::string> output_names();
 void warn_of_drive(Settings const& o);
 
 // Positions of the links of tracks at rest, common to all formulations.
@@ -94,25 +97,13 @@ struct Outcome {
          relative = -1.0;  // energies [J]; relative: [1], negative without an energy audit
 };
 
-// A vehicle with an integrator, a formulation for `compare`.
-template <class I>
-struct Driven {
-  std::string name;
-  Built built;
-  I integrator;
-};
-
-// The case that `compare` runs.
+// Case of a run of the vehicle.
 struct TrackCase {
   Settings const& settings;
   std::vector<Outcome>* outcomes;
   std::shared_ptr<VehicleScene> scene = nullptr;  // scene that records the run; null: if there is a film, a new scene
 
   Scenario<AnyModel> scenario(std::string const& name, Built const& built) const;
-  template <class I>
-  Scenario<AnyModel> operator()(Driven<I> const& driven) const {
-    return scenario(driven.name, driven.built);
-  }
 };
 
 // Results of several runs: the comparison and the outcome of each run.

@@ -10,10 +10,12 @@ Headers
   - take the description of a member that a concept requires from docs/extending.md if the member has no comment.
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
-  - are ordered by the links in the pages of docs/site: \\subpage.
+  - are ordered by the links in the pages of docs/site: \\subpage;
+  - of docs/theory have formulas $…$ and $$…$$, which KaTeX draws.
 Lines keep their numbers, so that a warning names the right one.
 
 """
+import html
 import re
 import sys
 from pathlib import Path
@@ -139,7 +141,7 @@ def header(name, text):
 # --- pages ------------------------------------------------------------------------------------
 def label(path):
     """docs/guide/contact.md -> guide_contact, docs/joints.md -> page_joints"""
-    return f"{path.parent.name if path.parent.name in ('guide', 'site') else 'page'}_{path.stem}"
+    return f"{path.parent.name if path.parent.name in ('guide', 'theory', 'site') else 'page'}_{path.stem}"
 
 
 def anchor(heading):
@@ -148,22 +150,42 @@ def anchor(heading):
     return "".join(c if c.isascii() else f"_{ord(c):x}" for c in words)
 
 
+def formula(tag, tex):
+    """A formula for KaTeX, which draws it in the browser."""
+    return f'\\htmlonly<{tag} class="tex">{html.escape(tex).replace("|", "&#124;")}</{tag}>\\endhtmlonly'
+
+
 def page(path, text):
-    own, in_code = label(path), False
+    own, in_code, in_formula = label(path), False, False
+    has_formulas = path.parent.name == "theory"
+    if has_formulas:
+        text = DISPLAY.sub(lambda m: formula("div", m[1]), text)
     out = []
     for line in text.split("\n"):
         if line.startswith("```"):
             in_code = not in_code
+        elif in_formula or '<div class="tex">' in line:
+            in_formula = "\\endhtmlonly" not in line
         elif not in_code:
             if heading := re.match(r"^(#+) (.*)$", line):
                 name = own if heading[1] == "#" else f"{own}_{anchor(heading[2])}"
                 line = f"{line} {{#{name}}}" if own != "site_index" or heading[1] != "#" else line
             line = "".join(part if i % 2 else LINK.sub(lambda m: link(path, m), part) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
+            if has_formulas:
+                line = FORMULA.sub(lambda m: formula("span", m[1]), line)
         out.append(line)
-    return "\n".join(out)
+    return "\n".join(out) + (DRAW if has_formulas else "")
 
 
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
+
+
+FORMULA, DISPLAY = re.compile(r"\$([^$]+)\$"), re.compile(r"\$\$(.+?)\$\$", re.S)
+DRAW = """
+\\htmlonly<link rel="stylesheet" href="katex/katex.min.css"><script src="katex/katex.min.js"></script><script>
+for (const e of document.querySelectorAll(".tex")) katex.render(e.textContent, e, {displayMode: e.tagName === "DIV", throwOnError: false});
+</script>\\endhtmlonly
+"""
 
 
 def title(path):

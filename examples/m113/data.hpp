@@ -192,7 +192,8 @@ inline constexpr double pin_arm = half_width;        ///< length in the rotation
 // ---------------------------------------------------------------------------------------------------------------
 // contact
 
-/// Parameters of one contact point  [T3.2].
+/// Parameters of one contact point  [T3.2]. T3.2 does not state if its stiffness and damping belong to one point or to
+/// all points of a link on one body: one point  [A]. `VehicleOptions::shared_contacts` selects the other reading.
 struct ContactNumbers {
   double stiffness;  ///< [N/m]
   double damping;    ///< [N s/m]

@@ -24,14 +24,13 @@ inline Mat3 principal(Vec3Storage const& moments) { return Vec3(moments).asDiago
 
 /// Steel link with the section of [Wallin 2016, §3.6], cable_width × cable_height, with x from the rear pin to the
 /// front pin. `placement` is the placement of the link's centre. Wallin 2016 does not give the height of the section.
-/// With the default `height` [m] the link has the mass of a rigid link.
-inline Bar link_bar(Placement placement = {}, double height = cable_height) {
+/// With the default `height` [m] the link has the mass of a rigid link. Another `young` [Pa] keeps Poisson's ratio.
+inline Bar link_bar(Placement placement = {}, double height = cable_height, double young = youngs_modulus) {
   placement.origin -= placement.axes.col(0) * (0.5 * pitch);
   return {
       .length = pitch,
       .section = Rectangle{.height = cable_width, .width = height},
-      .material =
-          Material{.density = density, .young = youngs_modulus, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
+      .material = Material{.density = density, .young = young, .poisson = 0.5 * youngs_modulus / shear_modulus - 1.0},
       .placement = placement};
 }
 
@@ -53,12 +52,13 @@ template <Body B>
 struct LinkOf {
   static_assert(!requires { B::frame_layout; }, "Links with a floating frame are in m113/modal_links.hpp.");
 
-  double height = cable_height;  ///< height of the section [m]
+  double height = cable_height;   ///< height of the section [m]
+  double young = youngs_modulus;  ///< Young's modulus [Pa]
 
   /// Link of `elements` elements with its centre at `at`. The mass follows from section and density, not from the
   /// `Solid`.
   B make(Solid const&, Placement const& at, int elements) const {
-    return B::from(link_bar(at, height), std::max(elements, 1));
+    return B::from(link_bar(at, height, young), std::max(elements, 1));
   }
   static auto front(BodyHandle<B> const& link) { return link.at(link.body().length()); }  ///< front pin
   static auto rear(BodyHandle<B> const& link) { return link.at(0.0); }                    ///< rear pin

@@ -4,6 +4,7 @@
 /// sparse module.
 
 #include <map>
+#include <optional>
 
 #include <polybody/bodies/ffr/attachment_modes.hpp>
 #include <polybody/bodies/ffr/beam_structure.hpp>
@@ -74,12 +75,12 @@ struct FiniteElementLink {
   }
 };
 
-/// Finite element link with static shapes under the loads of pins, wheels and ground, and with the three lowest free
-/// modes. The loads at either pin are all forces, and the moments about x and z. The other loads are forces along z on
-/// each third of the inner face and at both ends of the pad. \throws InvalidInput if a face has no nodes for its patch,
-/// and as `attachment_modes`.
+/// Finite element link with static shapes under the loads of pins, wheels and ground, and with the lowest free
+/// `modes`. The loads at either pin are all forces, and the moments about x and z. The other loads are forces along z
+/// on each third of the inner face and at both ends of the pad. \throws InvalidInput if a face has no nodes for its
+/// patch, and as `attachment_modes`.
 template <class = void>
-std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
+std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure, Index modes = 3) {
   FiniteElementLink link{std::move(structure), {}};
   std::vector<LoadPatch> const patches = link.patches();
   Index const size = link.structure.size();
@@ -89,22 +90,23 @@ std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure
     MatX const wrench = patches[k].nodes.loads(patches[k].at, size);
     for (int const c : k < 2 ? std::vector{0, 1, 2, 3, 5} : std::vector{2}) loads.col(used++) = wrench.col(c);
   }
-  link.shapes = attachment_modes(link.structure, loads, 3);
+  link.shapes = attachment_modes(link.structure, loads, modes);
   return std::make_shared<FiniteElementLink const>(std::move(link));
 }
 
 /// Links in a floating frame with modes. Without a finite element model, a link has at least two beam elements and a
 /// boundary frame at each pin. The floating frame is attached to the rear boundary frame [Craig & Bampton 1968]. The
-/// shapes are the six static shapes of the front pin's motion, and the three lowest modes with fixed pins. These are
-/// torsion, vertical bending and axial stretch. With a finite element model, the pins move with the end faces, and
-/// contact forces act on parts of the inner and outer faces.
+/// shapes are the six static shapes of the front pin's motion, and the lowest modes with fixed pins. The three lowest
+/// modes are torsion, vertical bending and axial stretch. With a finite element model, the pins move with the end
+/// faces, and contact forces act on parts of the inner and outer faces.
 template <>
 struct LinkOf<Ffr> {
-  static constexpr Index modes_between = 3;  ///< number of fixed-interface modes, those of the lowest frequencies
-
   std::shared_ptr<FiniteElementLink const> model = {};  ///< null: the link consists of beam elements
   FfrTerms terms = {};                                  ///< terms of the floating frame's equations that are included
   double height = cable_height;  ///< height of the section of beam elements; not used with a finite element model [m]
+  /// Number of fixed-interface modes of beam elements, those of the lowest frequencies. If empty, the coordinates of
+  /// the nodes replace the shapes. Not used with a finite element model.
+  std::optional<Index> modes = 3;
 
   /// Link with its centre at `at`, from the finite element model or from at least two beam `elements`. The `Solid` has
   /// no effect.
@@ -138,6 +140,7 @@ struct LinkOf<Ffr> {
     std::shared_ptr<FiniteElementLink const> model;  ///< finite element model of the link, or null
     FfrTerms terms;                                  ///< terms of the equations that are included
     double height;                                   ///< height of the section [m]
+    std::optional<Index> modes;                      ///< number of fixed-interface modes, or empty
     int elements;                                    ///< number of elements passed to `make`
     Ffr link;                                        ///< the link, at any placement
   };
@@ -146,17 +149,18 @@ struct LinkOf<Ffr> {
 
 template <class>
 Ffr LinkOf<Ffr>::make(Solid const&, Placement const& at, int elements) const {
-  bool const alike =
-      made && made->model == model && made->terms == terms && made->height == height && made->elements == elements;
+  bool const alike = made && made->model == model && made->terms == terms && made->height == height &&
+                     made->modes == modes && made->elements == elements;
   if (!alike) {
     auto const first = [&] {
       if (model) return Ffr(model->structure, model->shapes, {.terms = terms});
       int const n = std::max(elements, 2);
       Structure structure = structure_of(link_bar({}, height), n);
-      MatX shapes = craig_bampton(structure, {0, n}, modes_between);
+      MatX shapes = modes ? craig_bampton(structure, {0, n}, *modes)
+                          : nodal_coordinates(structure, ReferenceConditions::clamped());
       return Ffr(std::move(structure), std::move(shapes), {.terms = terms});
     };
-    made = std::make_shared<Made const>(Made{model, terms, height, elements, first()});
+    made = std::make_shared<Made const>(Made{model, terms, height, modes, elements, first()});
   }
   return made->link.placed(model ? at : link_bar(at, height).placement);
 }

@@ -59,6 +59,9 @@ struct VehicleOptions {
   bool friction = true;          ///< friction in all contacts
   double friction_factor = 1.0;  ///< factor of all friction coefficients of data.hpp [1]
   ContactsAct contacts = ContactsAct::in_the_middle;  ///< points of action on a link
+  /// True if stiffness and damping of a contact in data.hpp are the sums over all contact points of a link on one body:
+  /// two rims, two rings of teeth, four corners of the pad.
+  bool shared_contacts = false;
   bool held = false;         ///< true: the chassis is welded to the ground, and the arms to the chassis
   bool ground_body = false;  ///< true: the ground is a body, welded to the world [Wallin 2016, Table 3.4]
 };

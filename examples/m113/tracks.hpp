@@ -79,6 +79,7 @@ struct LinkContacts {
   static constexpr bool in_plane = observed != MarkerKind::frame;
 
   double friction = 1.0;  ///< factor of the friction coefficients of data.hpp [1]; 0: no friction
+  bool shared = false;    ///< true: as `VehicleOptions::shared_contacts`
 
   /// Contact of a link with rollers of this `radius` [m]. \param length length of the face along the link [m]
   OnRoller on_roller(double radius, double length = pitch) const {
@@ -88,12 +89,12 @@ struct LinkContacts {
                                            .radius = radius,
                                            .handover = std::min(0.03, 0.49 * length),
                                            .rims = in_plane ? std::vector{0.0} : std::vector{-rim_y, rim_y}},
-               on_wheel);
+               on_wheel, 2.0);
   }
   /// Contact of the horn with rims of this `radius` [m].
   OnRims on_rims(double radius) const {
     Vec3 const tip(horn.x, horn.y, horn.z + 0.5 * horn_size.z);
-    return law(GuideHornContact<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel);
+    return law(GuideHornContact<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel, 1.0);
   }
   /// Contact of a pin with the teeth. \param ahead distance from the marker to the front pin [m]
   OnSprocket on_teeth(double ahead = 0.5 * pitch) const {
@@ -101,12 +102,12 @@ struct LinkContacts {
                                             .valley = first_valley,
                                             .rings = in_plane ? std::vector{0.0} : std::vector{-tooth_y, tooth_y},
                                             .ahead = ahead},
-               on_sprocket);
+               on_sprocket, 2.0);
   }
   /// Contact of the pad with the ground. \param corners corners of the pad, relative to the marker
   template <Terrain Ground>
   OnGround<Ground> on_terrain(Ground const& ground, std::vector<Vec3> const& corners) const {
-    return law(LinkGroundContact<Ground, observed>{.terrain = ground, .pad = corners}, on_ground);
+    return law(LinkGroundContact<Ground, observed>{.terrain = ground, .pad = corners}, on_ground, double(pad.size()));
   }
   /// Corners of the pad relative to a marker on the middle line at the distance `x` in front of the link's centre. If
   /// `x` is given, the result contains the corners at `x` only; otherwise, it contains all corners.
@@ -119,9 +120,10 @@ struct LinkContacts {
   }
 
  private:
+  /// `points`: number of contact points of a rigid link on one body.
   template <ContactGeometry G>
-  Contact<G> law(G const& geometry, ContactNumbers const& c) const {
-    double const share = in_plane ? 2.0 : 1.0;
+  Contact<G> law(G const& geometry, ContactNumbers const& c, double points) const {
+    double const share = (in_plane ? 2.0 : 1.0) / (shared ? points : 1.0);
     return {geometry,
             {.stiffness = share * c.stiffness, .damping = share * c.damping, .onset = onset},
             {.coefficient = friction * c.friction, .slip_speed = slip_speed}};
@@ -152,7 +154,7 @@ class TrackContactsAdder {
   [[gnu::cold]] std::vector<ElementHandle<Contacts>> add(std::string const& name, Carriers<Base> const& carriers,
                                                          LinkParts<Link> const& of_side, Ground const& ground,
                                                          Track& track) {
-    OfLinks const of_links{options_.friction ? options_.friction_factor : 0.0};
+    OfLinks const of_links{options_.friction ? options_.friction_factor : 0.0, options_.shared_contacts};
     bool const in_the_middle = options_.contacts == ContactsAct::in_the_middle;
     double const face = in_the_middle ? pitch : pitch / 3.0;
     auto const rims = add_group(of_side.middle, name + "track", track);

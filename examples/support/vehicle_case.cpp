@@ -1,4 +1,4 @@
-// Runs of the tracked vehicle: outputs of each state, and the case for `compare`.
+// Runs of the tracked vehicle: outputs of each state, and the case of a run.
 #include "../tracked_vehicle.hpp"
 
 #include <polybody/io/vtk.hpp>
@@ -193,10 +193,18 @@ m113::VehicleOptions vehicle_options(Settings const& s) {
           .preload = s.preload,
           .cut = s.cut,
           .link_elements = s.elements,
-          .contacts = s.contacts};
+          .contacts = s.contacts,
+          .shared_contacts = s.shared_contacts};
 }
 
 GeneralisedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
+
+std::vector<std::string> output_names() {
+  std::vector<std::string> names;
+  for (auto const& [output, number] : asked)
+    names.push_back(std::string(output).substr(0, std::string(output).find(" [")));
+  return names;
+}
 
 void warn_of_drive(Settings const& o) {
   double const fastest = o.speed * std::max(std::abs(o.left), std::abs(o.right));

@@ -2,7 +2,6 @@
 
 #include <polybody/signals/filter.hpp>
 
-#include "formulations.hpp"
 #include "measures.hpp"
 
 namespace chapter4 {
@@ -79,10 +78,13 @@ std::vector<SettingRuns> runs_of_settings(Options const& o) {
     print(all.back());
   };
   for (auto const& [name, setting] : plausible(o))
-    add(name, setting, run(setting, {on_pins(rigid_links()), on_pins(cable_links())}));
+    add(name, setting, run(setting, {combination(setting, "rigid"), combination(setting, "ancf")}));
   // The run by Adams has rigid links only, because cables would need steps of less than a microsecond. The cables in
   // its results are those of the first setting.
-  StressRuns by_adams = rigid_links_by_adams(o);
+  Options adams = o;
+  adams.film = nullptr;
+  adams.selection.integrators = {"adams"};
+  StressRuns by_adams = run_of(adams, combination(adams, "rigid"), "rigid, Adams");
   StressRuns const& given = all.front().runs;
   by_adams.comparison.runs.push_back(given.comparison.runs[1]);
   by_adams.outcomes.push_back(given.outcomes[1]);
@@ -133,6 +135,29 @@ void ensemble(Options const& o) {
                          return filtered_strain(s.runs, k, o.cut_off);
                        }).curve(names[k], int(k), 1e5));
   draw(o, f, "ensemble");
+}
+
+void compare_stiffnesses(Options o) {
+  std::printf(
+      "%g rad/s, %g s; from half of the run on, or the plateau: strain times E/(steel's E), low pass %g Hz, in the "
+      "mean [1e-5]: decoupled and coupled (ANCF cables); their ratio; rms difference; position at the end, apart\n",
+      o.speed, o.end_time, o.cut_off);
+  std::printf("%-12s %12s %9s %9s %8s %9s %11s\n", "E/steel's E", "EA/p [MN/m]", "decoupled", "coupled", "ratio",
+              "off [%]", "apart [mm]");
+  for (double const young : {1.0, 1e-1, 1e-2, 3e-3, 1e-3, 3e-4}) {
+    o.young = young;
+    StressRuns const r = run(o, {combination(o, "rigid"), combination(o, "ancf")});
+    double const from = plateau(r.times(0));
+    auto const force_like = [&](std::size_t k) {
+      return 1e5 * young * span_of(r.times(k), r.filtered(k, o.cut_off), from).mean;
+    };
+    double const axial = 1e-6 * young * constants(m113::link_bar({}, section_height(o))).EA / m113::pitch;
+    std::printf(
+        "%-12g %12.2f %9.4f %9.4f %8.4f %9.2f %11.2f\n", young, axial, force_like(0), force_like(1),
+        force_like(0) / force_like(1), 1e2 * off(o, r, 0, r, 1, from),
+        1e3 * std::abs(r.history(1, "forward position [m]").back() - r.history(0, "forward position [m]").back()));
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace chapter4

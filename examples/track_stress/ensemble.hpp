@@ -30,4 +30,7 @@ class Band {
 // Prints decoupled and coupled strain for each setting as a table, and draws bands over all settings.
 void ensemble(Options const& o);
 
+// Prints decoupled and coupled strain for links of several stiffnesses as a table.
+void compare_stiffnesses(Options o);
+
 }  // namespace chapter4

@@ -66,7 +66,7 @@ StressScene::StressScene(Options const& o, std::string const& name, AnyVehicle c
       vehicle, o.film_until, false);
   if (!decoupled) return;
   loads_ = std::make_shared<LoadRecorder>(model_.system());
-  for (auto const& of : links_) loads_->add(of);
+  for (RigidLink const& one : links_) one.add(*loads_);
   scene_->keep([loads = loads_](State const& x) { loads->record(x); });
 }
 
@@ -80,7 +80,7 @@ void StressScene::finish(Options const& o, std::vector<double> const& times, Lin
 
 void StressScene::show_decoupled(Options const& o) {
   DecoupledLinks shown(o);
-  for (auto const& link : links_) shown.add(link.name, quasi_static(o, loads_->of(link)));
+  for (RigidLink const& link : links_) shown.add(link.name, quasi_static(o, link.record(*loads_)));
   Probe probe(model_);
   scene_->show_kept(probe, [&](std::size_t k, std::vector<VisualPart>& parts) { shown.dress(k, parts); });
 }

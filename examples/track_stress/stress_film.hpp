@@ -21,8 +21,8 @@ class StressScene {
 
   std::shared_ptr<VehicleScene> scene_;
   AnyModel model_;
-  std::vector<BodyHandle<Rigid<>>> links_;  // rigid links
-  std::shared_ptr<LoadRecorder> loads_;     // loads on the rigid links
+  std::vector<RigidLink> links_;         // rigid links
+  std::shared_ptr<LoadRecorder> loads_;  // loads on the rigid links
 };
 
 }  // namespace chapter4

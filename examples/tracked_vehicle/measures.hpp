@@ -122,17 +122,16 @@ inline void path_line(Lines& lines, Runs const& runs, std::size_t k) {
   lines("path, " + name_of(runs, k), {{"taut", 1e3 * off.taut, 1, "mm"}, {"slack", 1e3 * off.slack, 1, "mm"}});
 }
 
-// Difference of the filtered force in the watched pin between run k and the first run, for each interval that both runs
-// cover.
-inline std::vector<Value> force_differences(Runs const& runs, std::size_t k) {
-  std::vector<Value> numbers{{"apart", 1e2 * force_difference(runs, 0, runs, k), 2, "%"},
-                             {"Fx apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force x [N]"}), 2, "%"},
-                             {"Fz apart", 1e2 * force_difference(runs, 0, runs, k, {"joint force z [N]"}), 2, "%"}};
+// Difference of the filtered force in the watched pin between two runs, for each interval that both runs cover.
+inline std::vector<Value> force_differences(Runs const& first, std::size_t k, Runs const& runs, std::size_t run) {
+  std::vector<Value> numbers{{"apart", 1e2 * force_difference(first, k, runs, run), 2, "%"},
+                             {"Fx apart", 1e2 * force_difference(first, k, runs, run, {"joint force x [N]"}), 2, "%"},
+                             {"Fz apart", 1e2 * force_difference(first, k, runs, run, {"joint force z [N]"}), 2, "%"}};
   for (auto const& [name, in] :
        {std::pair{"apart to 10 s", Interval{1.0, 10.0}}, std::pair{"apart from 4 to 6 s", Interval{4.0, 6.0}}})
-    if (std::min(runs.times(0).back(), runs.times(k).back()) >= in.to - 1e-9)
+    if (std::min(first.times(k).back(), runs.times(run).back()) >= in.to - 1e-9)
       numbers.push_back(
-          {name, 1e2 * force_difference(runs, 0, runs, k, {"joint force x [N]", "joint force z [N]"}, in), 2, "%"});
+          {name, 1e2 * force_difference(first, k, runs, run, {"joint force x [N]", "joint force z [N]"}, in), 2, "%"});
   return numbers;
 }
 
@@ -144,7 +143,7 @@ inline void force_line(Lines& lines, Runs const& runs, std::size_t k) {
   };
   double const end = runs.times(k).back();
   if (!filters(k, 2.0 / force_cut_off)) return;
-  if (k > 0 && filters(0, 4.0) && filters(k, 4.0)) numbers = force_differences(runs, k);
+  if (k > 0 && filters(0, 4.0) && filters(k, 4.0)) numbers = force_differences(runs, 0, runs, k);
   for (char const* const axis : {"x", "z"}) {
     std::string const output = std::string("joint force ") + axis + " [N]";
     Filtered const f = filtered(runs, k, output, force_cut_off);

@@ -1,42 +1,53 @@
 #include "pins.hpp"
 
-#include "integrators.hpp"
-
 namespace chapter3 {
 
 namespace {
 
-// Runs the vehicle with an integrator, with fixed steps or with step size control. `step` is the default of the step
-// [s].
-template <class I>
-Runs run_by(Options o, Pins const& pins, I const& integrator, double step = implicit_step) {
-  if (o.step == 0.0) o.step = step;
-  if constexpr (requires { I::adaptive_step; }) o.first_step = std::min(1e-5, o.step);
-  if (o.first_step > 0.0 || o.step < implicit_step) o.sampling = std::max(o.step, implicit_step);
-  Runs runs;
-  runs.sampling = o.sampling;
-  runs.comparison =
-      require_complete(compare(TrackCase{o, &runs.outcomes}, Driven<I>{pins.name, build(o, pins.make), integrator}));
-  return runs;
+Pins named(Combination const& c, double stiffness, bool with_integrator = false) {
+  std::string name = c.links.body.name;
+  bool const rigid = name == "rigid";
+  if (rigid)
+    name = c.links.policy;
+  else if (!c.links.usual)
+    name += ", " + c.links.policy;
+  if (rigid && name == "penalty" && stiffness != m113::pin_stiffness)
+    name += stiffness == m113::soft_pin_stiffness ? " 1e7" : " " + number(stiffness);
+  if (with_integrator) name += ", " + integrator_name(c);
+  return {name, c, stiffness};
 }
 
 }  // namespace
 
+Pins ideal_pins(Options const& o) { return named(combination(o, "rigid"), o.spring_pins); }
+Pins penalty_pins(Options const& o, double k) { return named(combination(o, "rigid", "penalty"), k); }
+Pins bushing_pins(Options const& o) { return named(combination(o, "rigid", "bushing"), o.spring_pins); }
+Pins joint_coordinate_pins(Options const& o) {
+  return named(combination(o, "rigid", "joint-coordinates"), o.spring_pins);
+}
+Pins cable_pins(Options const& o) { return named(combination(o, "ancf"), o.spring_pins); }
+
+std::vector<Pins> selected_pins(Options const& o) {
+  std::vector<Pins> found;
+  for (Combination const& c : selected(o, "rigid"))
+    found.push_back(named(c, o.spring_pins, o.selection.integrators.size() > 1));
+  return found;
+}
+
 Runs Pins::run(Options const& o) const {
-  double const newton = o.tolerance > 0.0 ? o.tolerance : 1e-5, error = o.tolerance > 0.0 ? o.tolerance : 1e-6;
-  if (o.integrator == "hht")
-    return run_by(o, *this, HhtAlpha{.alpha = (o.rho - 1.0) / (o.rho + 1.0), .tolerance = newton});
-  if (o.integrator == "radau") return run_by(o, *this, Radau{.tolerance = newton});
-  if (o.integrator == "adams") return run_by(o, *this, Adams{.relative_tolerance = error, .absolute_tolerance = error});
-  if (o.integrator == "dormand-prince")
-    return run_by(o, *this, DormandPrince{.relative_tolerance = error, .absolute_tolerance = error});
-  if (o.integrator == "rk") return run_by(o, *this, RungeKutta{}, bearable);
-  return run_by(o, *this, GeneralisedAlpha{.rho_inf = o.rho, .tolerance = newton});
+  LinkSettings settings = with_steps(o, combination);
+  settings.spring_pins = stiffness;
+  Built const built = built_of(settings, combination.links);
+  Runs runs;
+  runs.sampling = settings.sampling;
+  runs.comparison = run_scenario(settings, combination, name,
+                                 [&] { return TrackCase{settings, &runs.outcomes}.scenario(name, built); });
+  return runs;
 }
 
 ProblemSize Pins::count(Options const& o) const {
   Ramp const drive = m113::drive(o.speed);
-  return problem_size(make({course(false), {drive, drive}, {.ground_body = true}}).model);
+  return problem_size(combination.links.make(o, {course(false), {drive, drive}, {.ground_body = true}}).vehicle.model);
 }
 
 }  // namespace chapter3

@@ -1,39 +1,33 @@
 #pragma once
-// Interface of a formulation of the pins. Each formulation is compiled in a separate file.
-#include <functional>
-
-#include "../tracked_vehicle.hpp"
+// Runs of the vehicle with the formulations of the pins that the thesis compares, and with any other combination.
+#include "../vehicle_links/combinations.hpp"
 
 namespace chapter3 {
 
-struct Options : Settings {
-  Options() { step = 0.0; }  // default step of the integrator
-
-  std::string track = "constraint", compare, figure, turn, integrator = "alpha";
-  double penalty = m113::pin_stiffness;
+struct Options : LinkSettings {
+  std::string compare, figure, turn;
   fs::path viewer, film_file;
-  double tolerance = 0.0;  // tolerance of Newton's method or of the error of a step; 0: default
   bool halve = false;
 };
 
-inline constexpr double implicit_step = 5e-4;  // [s]
-
-// A formulation of the pins.
+// Links on pins with an integrator, as the runs of this program name them.
 struct Pins {
   std::string name;
-  MakeVehicle make;
-  // Longest stable step of RungeKutta4 [s]: 2.8 divided by the fastest rate, which `track_times` prints.
-  double bearable;
-  std::string cannot_turn = {};  // reason for which --turn is refused; empty: the vehicle can turn
+  Combination combination;
+  double stiffness = m113::pin_stiffness;  // of pins as penalties or bushings [N/m]
 
   Runs run(Options const& o) const;
   // Count of coordinates and constraints as in the thesis, in which the ground is a body.
   ProblemSize count(Options const& o) const;
 };
-Pins ideal_pins();
-Pins penalty_pins(double stiffness);
-Pins bushing_pins(double stiffness);
-Pins cable_pins();
-Pins joint_coordinate_pins();
+// Rigid links, with the name of the policy of their pins.
+Pins ideal_pins(Options const& o);
+Pins penalty_pins(Options const& o, double stiffness);
+Pins bushing_pins(Options const& o);
+Pins joint_coordinate_pins(Options const& o);
+// Cables, with their name.
+Pins cable_pins(Options const& o);
+// The selected combinations.
+std::vector<Pins> selected_pins(Options const& o);
 
 }  // namespace chapter3

@@ -5,7 +5,7 @@
 ///   polybody/ffr.hpp           bodies in the floating frame of reference
 ///   polybody/formulations.hpp  further formulations of bodies, and systems with user-defined equations
 ///   polybody/vibration.hpp     modes, buckling, steady rotation, diagnosis of a model
-///   polybody/comparison.hpp   comparison of formulations at equal error, reports
+///   polybody/comparison.hpp    comparison of formulations at equal error, reports
 ///   polybody/stress.hpp        stresses of bodies, filters, rainflow counts
 ///   polybody/gradients.hpp     derivatives of runs with respect to parameters
 ///   polybody/film.hpp          films, pictures of modes, files for ParaView

@@ -1,5 +1,5 @@
-// Wallin 2016, Chapter 2: the two meshes of the large rotation vector formulation. The reference is an independent
-// computation with 10 elements, rho_inf = 0.8 and a step of 5 ms.
+// Wallin 2016, Chapter 2: the two meshes of the large rotation vector formulation. tests/long/planar_lrvf.py computes
+// the references, with 10 elements, rho_inf = 0.8 and the same steps.
 #include <gtest/gtest.h>
 
 #include "../../examples/chapter2_energy.hpp"
@@ -12,7 +12,7 @@ using namespace chapter2;
 using planar::Lrvf;
 
 Claim independent(char const* what, char const* formulation) {
-  return {"thesis, ch. 2", what, By::independent, "another code with the same mesh and step", formulation};
+  return {"thesis, ch. 2", what, By::independent, "`tests/long/planar_lrvf.py`, same mesh and step", formulation};
 }
 /// Claim about polybody's own runs in docs/chapter2.md.
 Claim measured(char const* what, char const* formulation) {
@@ -30,20 +30,20 @@ double largest_gap(Stiffness const& stiffness, double ramp, Index elements = 10)
 }
 
 TEST(ThesisChapter2, NodeGapOfHighStiffnessSlowRampIsSmall) {
-  held(independent("largest gap of the meshes [m]", "Lrvf, high stiffness, 10 s"), largest_gap(high, 10.0), 0.0034,
-       5e-5);
+  held(independent("largest gap of the meshes [m]", "Lrvf, high stiffness, 10 s"), largest_gap(high, 10.0), 0.00335881,
+       1e-7);
 }
 TEST(ThesisChapter2, NodeGapOfMediumStiffnessSlowRamp) {
-  held(independent("largest gap of the meshes [m]", "Lrvf, medium stiffness, 10 s"), largest_gap(medium, 10.0), 0.040,
-       5e-4);
+  held(independent("largest gap of the meshes [m]", "Lrvf, medium stiffness, 10 s"), largest_gap(medium, 10.0),
+       0.040355, 1e-6);
 }
 TEST(ThesisChapter2, NodeGapOfMediumStiffnessFastRamp) {
   double const gap = largest_gap(medium, 4.5);
-  held(independent("largest gap of the meshes [m]", "Lrvf, medium stiffness, 4.5 s"), gap, 0.10, 5e-3);
-  held(measured("largest gap of the meshes [m]", "Lrvf, medium stiffness, 4.5 s"), gap, 0.099, 5e-4);
+  held(independent("largest gap of the meshes [m]", "Lrvf, medium stiffness, 4.5 s"), gap, 0.0987197, 2e-6);
 }
 TEST(ThesisChapter2, NodeGapOfLowStiffnessFastRamp) {
-  held(independent("largest gap of the meshes [m]", "Lrvf, low stiffness, 4.5 s"), largest_gap(low, 4.5), 0.22, 5e-3);
+  held(independent("largest gap of the meshes [m]", "Lrvf, low stiffness, 4.5 s"), largest_gap(low, 4.5), 0.219484,
+       2e-6);
 }
 
 // EA and GA of 1e4 times the normal value suppress stretch and shear like constraints. The remaining distance is due
@@ -85,10 +85,10 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 2.0, .step = 1e-3}).run();
   MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
   char const* const body = "Lrvf, low stiffness, 30 kN m, h = 1e-3 s";
-  held(independent("x of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[0], 8.832, 1e-3);
-  held(independent("y of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[1], 1.874, 1e-3);
-  held(independent("x of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[0], 8.789, 1e-3);
-  held(independent("y of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[1], 1.955, 1e-3);
+  held(independent("x of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[0], 8.83173, 2e-5);
+  held(independent("y of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[1], 1.87444, 2e-5);
+  held(independent("x of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[0], 8.78937, 2e-5);
+  held(independent("y of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[1], 1.95515, 2e-5);
   // Figure 2.10: zero curvature on the position mesh; piecewise constant curvature with jumps on the rotation mesh
   for (double const curvature : d.position_curvature) EXPECT_EQ(curvature, 0.0);
   simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 20.0, .step = 5e-3}).run();

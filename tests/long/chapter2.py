@@ -6,6 +6,12 @@ from reading import markdown
 
 PAGE = "docs/chapter2.md"
 MESHES = ["gap", "strain", "interpolation", "rms", "rms left", "element", "bow", "turn"]
+PARTS = {
+    "rotary inertia": "LRVF - LRVF without rotary inertia",
+    "shear": "LRVF without rotary inertia - LRVF without rotary inertia and shear",
+    "none: the same equations": "LRVF without rotary inertia and shear - cable of engineering strain",
+    "strain measure": "cable of engineering strain - cable of Green strain",
+}
 NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
 
 
@@ -85,6 +91,31 @@ def equal_error(text):
     return numbers, markdown(["elements"] + [f"{name}, error [m]" for name in errors], rows)
 
 
+def model_parts(text):
+    """The differences of the physical models; without `difference` if it is not resolved. A table of the chain of PARTS."""
+    numbers = {}
+    part = text.split("Differences between the physical models", 1)[1]
+    for a, b, difference, bound in re.findall(rf"^  (\S.*?) {{2,}}(\S.*?) {{2,}}({NUMBER}|not resolved) +({NUMBER})$", part, re.MULTILINE):
+        of = numbers[f"{a} - {b}"] = {"bound": float(bound), "resolved": float(difference != "not resolved")}
+        if of["resolved"]:
+            of["difference"] = float(difference)
+    rows = []
+    for name, row in PARTS.items():
+        of = numbers[row]
+        rows.append([name, *row.split(" - "), f"{of['difference']:.3f}" if of["resolved"] else "not resolved", f"{of['bound']:.1g}"])
+    return numbers, markdown(["part", "first model", "second model", "difference [m]", "error bound [m]"], rows)
+
+
+def bands(text):
+    """Lines '  density RHO and ramp T, STIFFNESS: GAP m' as a table."""
+    numbers = said(text)
+    kinds = ("high", "medium", "low")
+    rows = [[row.split()[1], row.split()[4]] + [f"{of[s]:.2g}" for s in kinds] for row, of in numbers.items()]
+    numbers["all"] = {f"{name} {s} in % of L": 100 * choose(of[s] for of in list(numbers.values())) / 10
+                      for s in kinds for name, choose in (("least", min), ("most", max))}
+    return numbers, markdown(["density [kg/m³]", "ramp [s]", "high stiffness [m]", "medium stiffness [m]", "low stiffness [m]"], rows)
+
+
 def plain(text):
     return {**said(text), **snapshots(text)}, ""
 
@@ -110,4 +141,6 @@ CASES = {
     "cantilever": (PAGE, "cantilever --no-plot", meshes({"tip-moment": "2.9, 30 kN m"})),
     "cantilever_fine": (PAGE, "cantilever --case moment --step 1e-3 --until 2 --no-plot", plain),
     "arm_equal_error": (PAGE, "robot_arm --case compare --no-plot", equal_error),
+    "arm_split": (PAGE, "robot_arm --case split --no-plot", model_parts),
+    "arm_bands": (PAGE, "robot_arm --case bands --no-plot", bands),
 }

@@ -26,6 +26,7 @@ def lines(text):
 CASES = {
     "table_3_4": (PAGE, VEHICLE + "--figure table", lines),
     "figures_3": (PAGE, VEHICLE + "--figure all --audit", lines),
+    "shared_contacts": (PAGE, VEHICLE + "--shared-contacts --figure 3.7 --until 1", lines),
     "plateau_25": (PAGE, VEHICLE + "--until 20", lines),
     "plateau_30": (PAGE, VEHICLE + "--until 20 --speed 30", lines),
     "plateau_80": (PAGE, VEHICLE + "--until 20 --speed 80", lines),
@@ -35,7 +36,7 @@ CASES = {
     "bumps": (PAGE, VEHICLE + "--bumps", lines),
     **{
         f"by_{integrator}": (PAGE, VEHICLE + f"--integrator {integrator} --until 0.1", lines)
-        for integrator in ["alpha", "hht", "radau", "adams", "dormand-prince", "rk"]
+        for integrator in ["generalised-alpha", "hht", "radau", "adams", "dormand-prince", "runge-kutta"]
     },
     "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
 }

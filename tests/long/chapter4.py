@@ -5,12 +5,12 @@ import re
 from reading import by_pattern, columns, markdown
 
 PAGE = "docs/track_stress.md"
-PINS = ["constraint", "penalty", "bushing", "linear", "recursive"]
-REASONS = {
-    "the frames of its ends are not linear in its coordinates": "not linear",
-    "it has no frame that a joint could carry": "no frame to carry",
-    "its ends have an axis and no frame, so the axis of a pin is not defined": "no frame at its ends",
-    "at its pins, neighbouring links share a slope vector across the track, which is constant in world axes": "fixed in the world",
+PINS = ["constraint", "penalty", "bushing", "ancf-linear", "joint-coordinates"]
+REASONS = {  # by the first words of the sentence
+    "AncfLinear needs markers that are linear": "not linear",
+    "JointCoordinates supports joints between": "no frame to carry",
+    "This joint needs a marker with axes": "no frame at its ends",
+    "The slope vector that neighbouring links share": "fixed in the world",
 }
 
 
@@ -24,7 +24,7 @@ def matrix(text):
         if words[0] not in links:
             links.append(words[0])
         if words[2] == "cannot":
-            cells[words[0], words[1]] = REASONS[line.split("cannot be: ")[1]]
+            cells[words[0], words[1]] = next(short for why, short in REASONS.items() if why in line)
             continue
         speeds, rows, _, _, _, forward, strain, force, gap, energy, *turning = map(float, words[2:])
         numbers[f"{words[0]} {words[1]}"] = {"speeds": speeds, "rows": rows, "forward": forward, "strain": strain,
@@ -164,7 +164,13 @@ ENSEMBLE = {
                                                     if not name.startswith(OTHER_MASS))},
     "each": {"vibrating off": lambda numbers: max(of["vibrating off"] for of in numbers.values())}}
 BENT = ("no m_rf", "none of these")
+STIFFNESS = {"all": {"ratio off": lambda numbers: max(100.0 * abs(of["ratio"] - 1.0) for of in numbers.values())}}
 TERMS = {"others": {"raw": worst_term("raw", BENT), "bending": worst_term("bending", BENT)}, "each": {"low pass": worst_term("low pass")}}
+
+stiffness = columns(12, ["axial", "decoupled", "coupled", "ratio", "off", "apart"],
+                    ["E, divided by that of steel", "EA/p [MN/m]", "decoupled [10⁻⁵]", "coupled [10⁻⁵]", "ratio of decoupled to coupled",
+                     "difference, rms [%]", "difference of the final positions [mm]"],
+                    {"axial": 1, "decoupled": 3, "coupled": 3, "ratio": 3, "off": 1, "apart": 1})
 
 CASES = {
     "matrix": (PAGE, "track_stress --compare matrix --until 3 --no-plot", matrix),
@@ -174,11 +180,12 @@ CASES = {
     "surface_30": (PAGE, "track_stress --compare surface --until 10 --no-plot", with_rows(surface, SURFACE)),
     "surface_80": (PAGE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
     "terms": (PAGE, "track_stress --compare terms --until 4 --speed 80 --no-plot", with_rows(terms, TERMS)),
+    "stiffness": (PAGE, "track_stress --compare stiffness --until 4 --no-plot", with_rows(stiffness, STIFFNESS)),
     "links_30": (PAGE, "track_stress --compare --audit --fatigue --no-plot", links),
     "links_80": (PAGE, "track_stress --compare --audit --fatigue --speed 80 --no-plot", links),
     "twenty": (PAGE, "track_stress --figure 4.11 --no-plot", twenty),
-    "halved_ancf": (PAGE, "track_stress --links ancf --halve --no-plot", halve),
-    "halved_rigid": (PAGE, "track_stress --links rigid --halve --until 4 --no-plot", halve),
+    "halved_ancf": (PAGE, "track_stress --body ancf --halve --no-plot", halve),
+    "halved_rigid": (PAGE, "track_stress --body rigid --halve --until 4 --no-plot", halve),
     "bending_30": (PAGE, "track_stress --compare pair --elements 2 --no-plot", report),
     "bending_80": (PAGE, "track_stress --compare pair --elements 2 --speed 80 --no-plot", report),
     "ensemble_30": (PAGE, "track_stress --compare ensemble --no-plot", with_rows(ensemble, ENSEMBLE)),

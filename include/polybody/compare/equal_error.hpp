@@ -40,16 +40,22 @@ enum class StudyRunKind { record, record_energy, perturb, time };
 /// Runs one formulation, independent of the type of its model.
 using StudyRunner = std::function<void(StudyRun&, StudyRunKind, EqualErrorOptions const&, EqualErrorReport&)>;
 
-/// True for a formulation whose type contains a number of modes.
+/// True for a formulation whose type contains a number of elements.
 template <class F>
-inline constexpr bool has_fixed_modes = false;
-template <class B, int elements, int modes, class P, class I>
-inline constexpr bool has_fixed_modes<Formulation<Modal<B, elements, modes>, P, I>> = true;
+inline constexpr bool has_fixed_mesh = false;
+template <class B, class P, class I>
+inline constexpr bool has_fixed_mesh<Formulation<B, P, I>> = requires { MeshOf<B>::elements; };
+
+/// Output of a study: its function of a state, and the times at which it need not be smooth [s], ascending.
+struct StudyOutput {
+  std::function<double(State const&)> value = {};
+  std::vector<double> breakpoints = {};
+};
 
 /// Family of the body of a formulation. `modal` is true if the study varies the number of modes.
 template <class F>
 std::string_view family_of(F const& formulation, bool modal) {
-  bool const has_modes = modal || has_fixed_modes<F> || (F::has_modes && formulation.mesh.modes.has_value());
+  bool const has_modes = modal || (F::has_modes && formulation.mesh.modes.has_value());
   return has_modes ? families::ffr_modal : formulation_family<typename F::BodyType>;
 }
 
@@ -153,29 +159,30 @@ void require_smooth(StudiedFormulation& f, double least, std::string const& outp
 
 /// Stores in `r` the largest span of the outputs of the finest runs of selected formulations. If no selected output
 /// varies, the span remains unchanged.
-/// \throws InvalidInput if no selected output varies, one of them is not zero, and the span is zero.
+/// \throws InvalidInput if formulations are selected, none of their outputs varies, and the span is zero.
 template <class Select>
 void find_span(EqualErrorReport& r, Select&& selects) {
   double span = 0.0, largest = 0.0;
+  bool any = false;
   for (StudiedFormulation const& f : r.formulations) {
     if (!selects(f)) continue;
+    any = true;
     auto const [least, most] = std::minmax_element(f.finest().y.begin(), f.finest().y.end());
     span = std::max(span, *most - *least);
     largest = std::max({largest, std::abs(*least), std::abs(*most)});
   }
   if (span > 1e-12 * largest)
     r.span = span;
-  else if (largest > 0.0 && r.span == 0.0)
+  else if (any && r.span == 0.0)
     throw InvalidInput("equal_error.constant", {"EqualErrorStudy: the output \"", ErrorObject{r.output},
                                                 "\" is constant, so relative errors are undefined. Choose another "
                                                 "output."});
 }
 
 /// Completes a simulation of a study and stores its results in `run`, and the times of the samples in `r`.
-/// \param y the output of a state
 template <class Run>
-void complete_run(Run& simulation, RunOptions const& options, StudyRun& run, StudyRunKind kind,
-                  std::function<double(State const&)> const& y, EqualErrorOptions const& o, EqualErrorReport& r) {
+void complete_run(Run& simulation, StudyOutput const& output, StudyRun& run, StudyRunKind kind,
+                  EqualErrorOptions const& o, EqualErrorReport& r) {
   std::clock_t const begin = std::clock();
   if (kind == StudyRunKind::time) {
     simulation.run();
@@ -183,11 +190,11 @@ void complete_run(Run& simulation, RunOptions const& options, StudyRun& run, Stu
     return;
   }
   OutputHistory outputs, energies;
-  outputs.breakpoints = energies.breakpoints = detail::breakpoints_of(simulation, options);
+  outputs.breakpoints = energies.breakpoints = output.breakpoints;
   auto const note = [&] {
     auto const& now = simulation.now();
     outputs.times.push_back(now.t);
-    outputs.values.push_back(y(now));
+    outputs.values.push_back(output.value(now));
     if (kind == StudyRunKind::record_energy) energies.values.push_back(now.energy().total());
   };
   note();
@@ -259,6 +266,8 @@ class EqualErrorStudy {
   template <class C, class F>
     requires ComparisonCase<C, F>
   void add(C const& make_case, F const& formulation, StudyEntry entry) {
+    static_assert(!detail::has_fixed_mesh<F>,
+                  "EqualErrorStudy sets the mesh of the body at run time. Name the body without Meshed or Modal.");
     StudiedFormulation f;
     f.name = detail::name_of(formulation);
     f.model = std::move(entry.model);
@@ -291,8 +300,10 @@ class EqualErrorStudy {
       auto simulation = simulate(scenario.model, x, with_mesh.integrator, scenario.options);
       ProblemSize const size = problem_size(scenario.model);
       run.unknowns = size.velocities + size.rows;
-      auto const y = [&](State const& now) { return output.value(scenario.model, now); };
-      detail::complete_run(simulation, scenario.options, run, kind, y, o, r);
+      detail::complete_run(simulation,
+                           {.value = [&](State const& now) { return output.value(scenario.model, now); },
+                            .breakpoints = detail::breakpoints_of(simulation, scenario.options)},
+                           run, kind, o, r);
     });
     report_.formulations.push_back(std::move(f));
   }

@@ -75,8 +75,9 @@ struct Friction {
   }
 };
 
-/// Contact force between two markers: N n + F_t on a at each contact point, with the friction F_t, and the opposite
-/// force on b. The velocity of either body is that of its material point at the contact point.
+/// Contact force between two markers: N n + F_t on a at each contact point, with the normal force N, the normal n and
+/// the friction F_t. The opposite force acts on b. The velocity of either body is that of its material point at the
+/// contact point.
 template <ContactGeometry G, NormalForce N = SpringDamperContact>
 struct Contact {
   using Geometry = G;  ///< type of the geometry
@@ -106,8 +107,8 @@ struct Contact {
   {
     return friction.coefficient == 0.0 && normal.is_lossless();
   }
-  /// True if the shapes touch neither at the frames `from` of a and b nor at the frames `to`, but on the straight path
-  /// between them.
+  /// True if the shapes do not overlap at the frames `from` and `to` of a and b, but pass through each other on the
+  /// straight path between these frames.
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const
     requires requires(G const& shape) { shape.passes(from, to); }
   {
@@ -119,7 +120,8 @@ struct Contact {
     return geometry.reach(b);
   }
 
-  /// Calls visit(point, v, N) for every contact point, with the velocity v of a relative to b at the point.
+  /// Calls visit(point, v, N) for every contact point, with the velocity v of a relative to b at the point and the
+  /// normal force N.
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
     auto const at_point = [&](ContactPoint<T> const& p) {
@@ -279,7 +281,8 @@ struct SphereOnSphere {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::sphere(b.r, radius_a + radius_b);
   }
-  /// True if the spheres pass through each other on the way from the frames `from` to the frames `to` of a and b.
+  /// True if the spheres pass through each other on the straight path from the frames `from` to the frames `to` of a
+  /// and b. A depth of at most 5 % of the sum of the radii does not count.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     return detail::passes_through(from[0].r - from[1].r, to[0].r - to[1].r, radius_a + radius_b);
@@ -317,7 +320,8 @@ struct SphereOnCylinder {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::cylinder(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius + cylinder);
   }
-  /// True if the sphere passes through the cylinder on the way from the frames `from` to the frames `to` of a and b.
+  /// True if the sphere passes through the cylinder on the straight path from the frames `from` to the frames `to` of a
+  /// and b. A depth of at most 5 % of the sum of the radii does not count.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     auto const across = [](Frame<double> const(&f)[2]) {

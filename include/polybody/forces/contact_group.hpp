@@ -17,8 +17,8 @@ namespace polybody {
 ///   model.add_partner(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
 /// A law is a force element of two markers: the first is one of the many, the second is a partner. A law is evaluated
 /// only if its `may_touch(first, second)` returns true for the frames of both markers. This test should cost little
-/// more than the computation of a distance. If all laws have `reach(second)` (`HasReach`), several markers are tested
-/// at once with SIMD operations.
+/// more than the computation of a distance. If all laws have `reach(second)` (`HasReach`) and the group has at most 64
+/// partners, several markers are tested at once with SIMD operations.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
@@ -72,7 +72,8 @@ class ContactGroup {
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// Overload for the markers i in [begin, end) of the many; `frame` and `visit` are as above.
+  /// Calls visit(i, j, law) for the pairs with `may_touch` true and i in [begin, end) only. frame(k) is the frame of
+  /// marker k.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))

@@ -15,10 +15,10 @@ namespace polybody {
 struct ContactReach {
   Vec3 origin = Vec3::Zero();  ///< (3) origin of d, world axes [m]
   Vec3 axis = Vec3::UnitZ();   ///< (3) unit vector, world axes
-  double squared = 0.0;        ///< coefficient of |d|² [1]
+  double squared = 0.0;        ///< coefficient of |d|² [1]; [1/m] for a half space
   double along_squared = 0.0;  ///< coefficient of (d·axis)² [1]
-  double along = 0.0;          ///< coefficient of d·axis [m]; [1] if the other coefficients are zero
-  double limit = 0.0;          ///< limit [m²], or [m] if the other coefficients are zero
+  double along = 0.0;          ///< coefficient of d·axis [m]; [1] for a half space
+  double limit = 0.0;          ///< limit [m²]; [m] for a half space
 
   /// Sphere of radius `radius` [m] about `origin`.
   static ContactReach sphere(Vec3 const& origin, double radius) {

@@ -25,7 +25,7 @@ concept WrenchFunction = requires(F const force, std::array<Frame<double>, F::ma
 };
 /// Force element with first-order states z, such as a controller, a valve or a viscoelastic material. It provides
 /// wrenches as a function of frames and states, and the rates ż = h(frames, z, t). The optional `initial_states()`
-/// returns z in the reference state, which is otherwise zero.
+/// returns z in the reference state. Without this member, z is zero there.
 template <class F>
 concept HasStates = states_of<F>() > 0 && requires(F const force, std::array<Frame<double>, F::markers> const frames,
                                                    std::array<double, states_of<F>()> const z, double t) {
@@ -44,8 +44,8 @@ concept ForceElement = requires(F const force, std::string const name) {
   force.check(name);
 } && (WrenchFunction<F> || HasStates<F>);
 
-/// Kinematics that a force element requires of its second marker: `needs_of_second`, or `needs` as for the first
-/// marker.
+/// Kinematics that a force element requires of its second marker: `needs_of_second`, or `needs` if this member is
+/// missing.
 template <class F>
   requires requires { F::markers; }
 constexpr MarkerKind needs_of_second() {

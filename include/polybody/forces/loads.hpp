@@ -14,7 +14,7 @@ namespace polybody {
 /// Axes of a load's components.
 enum class LoadAxes {
   world,  ///< dead load: constant direction in the world
-  marker  ///< follower load: rotates with the marker
+  marker  ///< follower load: rotates with the marker, which must have axes
 };
 
 namespace detail {
@@ -91,7 +91,8 @@ struct BarRange {
 /// on each piece. For a dead load, the generalised forces are exact for shape functions up to third order if each
 /// element has its own piece. The forces are named "`name`, point 1" and so on; without a name, the model names them.
 /// The force types of the model must include `PointForce<Law>`. Returns the handles of the forces.
-/// \throws InvalidInput for a range that is empty or outside the bar, or for less than one piece.
+/// \throws InvalidInput if the range is empty, if an end of it lies outside the bar, or for less than one piece. The
+/// model then stays unchanged.
 template <class M, class B, TimeFunction Law = Constant>
 auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,
                        std::string const& name = "") {
@@ -106,6 +107,7 @@ auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const
     throw InvalidInput("distributed_force.pieces",
                        {"\"", ErrorObject{what}, "\": a distributed force needs at least one piece, but has ",
                         ErrorValue{pieces}, "."});
+  for (double const end : {from, to}) (void)bar.at(end);
   double const l = (to - from) / double(pieces);
   std::vector<decltype(model.apply(per_length, bar.at(from), name))> handles;
   for (Index i = 0; i < pieces; ++i)

@@ -67,7 +67,7 @@ struct AxialSpring {
 
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
-  double preload = 0.0;        ///< P, force at s = 0 [N]
+  double preload = 0.0;        ///< P [N]: at s = 0 the force on b is −P along the axis
   Vec3 axis = Vec3::UnitX();   ///< (3) unit vector in the axes of marker a
 
   template <class = void>  // compiled where it is used
@@ -111,8 +111,8 @@ struct AxialSpring {
   }
 };
 
-/// Spring and damper in series along the line between two markers: tension N = k (l − l₀ − z) with the elongation z
-/// of the damper, z˙ = N/c. At constant length the tension relaxes as e^{−kt/c} [Maxwell 1867].
+/// Spring and damper in series along the line between two markers: tension N = k (l − l₀ − z) with the elongation z of
+/// the damper, ż = N/c. At constant length the tension relaxes as e^{−kt/c} [Maxwell 1867].
 struct MaxwellElement {
   static constexpr int markers = 2, states = 1;  ///< two markers; one state, the elongation z of the damper [m]
   static constexpr bool is_load = false;

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Force elements that are defined by lambdas of the user, with or without first-order states.
+
 #include <polybody/forces/force_element.hpp>
 
 namespace polybody {

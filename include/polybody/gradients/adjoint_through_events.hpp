@@ -82,7 +82,8 @@ class StartCorrectionAdjoint {
   std::optional<bool> decided_;
 };
 
-/// Forward run and backward sweep of a run with breakpoints or events. \tparam I integrator of the generalised-α family
+/// Forward run and backward sweep of a run with breakpoints, events, or times that depend on parameters. \tparam I
+/// integrator of the generalised-α family
 template <class S, class I>
 class AdjointEventHandler {
   using V = PerturbedModel<S, I>;

@@ -12,8 +12,8 @@
 namespace polybody::detail {
 
 /// Flags of the equations of the full model: nonzero if an equation depends on the parameter. Equations of motion, in
-/// the order of the velocities, precede constraint equations. \throws InvalidInput if the model does not have an object
-/// in `affects`.
+/// the order of the velocities, precede constraint equations. \throws InvalidInput if a name in
+/// `affects` belongs to no object of the model.
 template <class = void>
 std::vector<char> affected_in_full(ModelLayout const& layout, Parameter const& p) {
   std::vector<char> affected(std::size_t(layout.velocities + layout.rows), p.affects.empty());
@@ -81,7 +81,8 @@ std::vector<char> affected_in_step(System const& system, std::vector<char> const
   return affected;
 }
 /// Indices of the equations of a step that depend on a parameter, ascending. Equations of motion, in the order of the
-/// velocities, precede constraint equations. \throws InvalidInput if the model does not have an object in `affects`.
+/// velocities, precede constraint equations. \throws InvalidInput if a name in `affects` belongs to no object of the
+/// model.
 template <class = void>
 std::vector<Index> affected_equations(System const& system, Parameter const& p) {
   std::vector<char> const affected = affected_in_step(system, affected_in_full(system.layout(), p));

@@ -58,7 +58,7 @@ double size_of_rows(X const& x) {
   return size;
 }
 
-/// Values of an equation at the four difference points of its own parameter.
+/// Values of an equation at the four difference points of the member that owns the equation.
 using ValuesAtPlaces = std::array<double, 4>;
 
 /// Check of a group of parameters (members) that are perturbed together in four models. The owner of an equation is the

@@ -161,18 +161,20 @@ class AdjointRun {
       throw InvalidInput(
           "gradient.method",
           {ErrorObject{"gradient"},
-           ": runs with events or breakpoints need a method of the generalised-α family. Use `sensitivities`."});
+           ": runs with events or breakpoints need a method of the generalised-α family. Use such a method, or "
+           "`sensitivities`."});
   }
-  /// Refuses steps of different lengths if the start correction depends on the length.
+  /// Refuses steps of different lengths if the integrator has a start correction, which depends on the length.
   void require_equal_steps() const {
     if (!W::asks_for_equal_steps(full_)) return;
     std::vector<RecordedStep> const& steps = run_.steps();
     for (std::size_t k = 1; k < steps.size(); ++k)
       if (std::abs(steps[k].h - steps[k - 1].h) > 1e-9 * steps[k].h)
-        throw InvalidInput("gradient.step_length",
-                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{steps[k].end},
-                            " s differs from the other steps. Set a step that divides the duration of the run, or set "
-                            "start_correction to false."});
+        throw InvalidInput(
+            "gradient.step_length",
+            {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{steps[k].end},
+             " s differs from that of the step before. Set a step that divides the duration of the run, or set "
+             "start_correction to false."});
   }
   /// Weight of a state in the trapezoidal rule of the integral [s].
   double weight(std::size_t state) const {
@@ -203,7 +205,8 @@ class AdjointRun {
     derivatives_.add(full_.scenario.integrand, full_.scenario.model, x, w, bar);
     add_to_derivatives([&](V& v) { return w * term(v.scenario.integrand, v.scenario.model, v.full_state(x)); });
   }
-  /// Computes the derivatives of the initial state. \param x start of the first step
+  /// Computes the derivatives of x, the start of the first step. Adds the derivatives of the integrand at the start to
+  /// dJ/dp. Checks the `affects` of the parameters.
   void prepare(State const& x) {
     models_.require_named(x);
     double const h = run_.steps().front().h;
@@ -255,9 +258,11 @@ class AdjointRun {
 /// with respect to each parameter. Newton's method iterates until corrections are below 1e-12 or at round-off. \param
 /// integrator integrator of the generalised-α family, without `stabilised`; RungeKutta4; DormandPrince, whose step
 /// lengths are constants; or Radau. \throws InvalidInput for invalid parameters or options; if the factory makes models
-/// of different sizes; if an event only touches zero; if two events coincide, or other times coincide so that the run
-/// is not differentiable; if the steps of a run with start correction, but without events, breakpoints and moving
-/// times, differ in length; for events, breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix
+/// of different sizes; if a parameter changes equations of an object outside its `affects`; if the run has no step; if
+/// an event only touches zero or remains zero; if two events coincide, or other times coincide so that the run is not
+/// differentiable. With a Runge–Kutta method, InvalidInput is also thrown for events, breakpoints, and times that
+/// depend on a parameter. In a run with start correction and with none of these three, it is also thrown if the
+/// correction depends on a parameter or if the steps have different lengths. \throws SingularMatrix
 /// in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
@@ -279,7 +284,7 @@ GradientResult gradient(Make const& make, std::vector<Parameter> const& paramete
     if (models.has_moving_times(requires { I::adaptive_step; }))
       throw InvalidInput("gradient.method", {ErrorObject{"gradient"},
                                              ": runs whose start, end or steps depend on a parameter need a method of "
-                                             "the generalised-α family. Use `sensitivities`."});
+                                             "the generalised-α family. Use such a method, or `sensitivities`."});
     return detail::AdjointRun<S, I, detail::StageBackwardSweep>(models, parameters, method).run(options);
   }
 }

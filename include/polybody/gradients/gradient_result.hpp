@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Options and result of `gradient`.
+/// Options and result of `gradient`, and the backward sweep with snapshots of states (`reverse_steps`).
 
 #include <algorithm>
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace polybody {
 
-// Backward sweep over the steps of a run with few snapshots of its states. The binomial schedule repeats the fewest
-// steps [Griewank & Walther 2000, Algorithm 799]. With s snapshots, one of them at the start, and at most r
-// computations of each step, a sweep over C(s + r, s) steps is possible.
+// Backward sweep over the steps of a run with a limited number of snapshots of its states. The binomial schedule
+// repeats the fewest steps [Griewank & Walther 2000, Algorithm 799]. With s snapshots, one of them at the start, and at
+// most r computations of each step, a sweep over C(s + r, s) steps is possible.
 
 /// Cost of the backward sweep over a run.
 struct CheckpointingReport {
@@ -112,8 +112,8 @@ struct GradientResult {
 
 namespace detail {
 
-/// Largest number of stored states. \param size size of one state [bytes]. \throws InvalidInput if not even one state
-/// fits into the memory.
+/// Largest number of stored states. \param size size of one state [bytes]. \throws InvalidInput if `snapshots` is zero
+/// and `memory` is less than the size of one state.
 template <class = void>
 std::size_t snapshots_of(GradientOptions const& options, double size) {
   if (options.snapshots > 0) return options.snapshots;

@@ -4,7 +4,7 @@
 ///
 /// A step ends at q₁ = q₀ ⊞ δ. For rotational coordinates, a change dδ changes q₁ by the increment u = T dδ at q₁, and
 /// `local_rate`(δ, u) = T⁻¹ u [Arnold, Brüls & Cardona 2015]. The tangent C = cm M + cd D + ck K of a system contains K
-/// with respect to increments at q₁. With y = (δa₁, δλ₁), the derivative of a step is therefore
+/// with respect to increments at q₁. The derivative of the equations with respect to y = (δa₁, δλ₁) is therefore
 ///   [cm M + cd D + ck K T, Gᵀ; G T, 0] = [C + (cm M + cd D) W, Gᵀ; G, 0] diag(T, 1),  W = T⁻¹ − 1.
 /// For nonholonomic constraints, the second form contains G + G W instead of G. The size of W is hω/2, with the step h
 /// and the angular velocity ω. Newton's method omits W. A correction of derivatives with the factorisation of Newton's

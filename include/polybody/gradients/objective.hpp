@@ -5,7 +5,7 @@
 ///     return with_objective(Scenario<M>{model, start, options}, [tip](auto const& m, auto const& x) { … });
 ///
 /// A function of a state of any scalar type (`auto const& x`) is differentiated with a tape. A function of a
-/// `State const&` is differentiated by differences, with four evaluations for each number of the state.
+/// `State const&` is differentiated by differences, with four evaluations for each entry of q, v, v̇ and λ.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
@@ -73,7 +73,7 @@ double term(F const& f, M const& model, State const& x) {
   }
 }
 
-/// Adds `weight` times the derivatives of f with respect to the numbers of x to the adjoint variables `bar`.
+/// Adds `weight` times the derivatives of f with respect to q, v, v̇ and λ of x to the adjoint variables `bar`.
 template <class F, class M>
 void add_derivatives(F const& f, M const& model, State const& x, double weight, Tape& recording, Costate& bar) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -121,13 +121,13 @@ void add_derivatives(F const& f, M const& model, State const& x, double weight, 
   }
 }
 
-/// Derivatives of objective functions with respect to the numbers of the reduced states of a run. \tparam M model
+/// Derivatives of objective functions with respect to q, v, v̇ and λ of the reduced states of a run. \tparam M model
 template <class M>
 class ObjectiveDerivatives {
  public:
   [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : full_state_(model), recorded_(model) {}
 
-  /// Adds `weight` times the derivatives of f(model, full state of x) with respect to the numbers of x to `bar`.
+  /// Adds `weight` times the derivatives of f(model, full state of x) with respect to q, v, v̇ and λ of x to `bar`.
   template <class F>
   void add(F const& f, M const& model, State const& x, double weight, Costate& bar) {
     if constexpr (std::same_as<F, NoTerm>) return;

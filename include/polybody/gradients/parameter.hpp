@@ -29,7 +29,8 @@ struct Parameter {
   double distance() const { return 4e-4 * size(); }
 };
 
-/// \throws InvalidInput unless parameters have different names, finite values, and a scale if the value is zero.
+/// \throws InvalidInput unless all parameters have different, nonempty names, finite values, and finite scales that are
+/// not negative. A parameter with the value zero also needs a positive scale.
 template <class = void>  // compiled where it is used
 void check(std::vector<Parameter> const& parameters) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {

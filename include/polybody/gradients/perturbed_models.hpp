@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Derivatives by differences of models with respect to parameters, and along the motion if times depend on parameters.
+/// Derivatives with respect to parameters, by differences between perturbed models. If times depend on parameters,
+/// differences along the motion are added.
 
 #include <memory>
 #include <optional>
@@ -81,8 +82,8 @@ class NearbyModels {
 /// Derivatives of functions of scenarios by differences. If the time of a state depends on parameter j, the change of
 /// the state with j has two parts. The first part is the change at fixed time. The perturbed models are evaluated in
 /// states with this change, so that stiff elements are not excited. The second part is the change along the motion
-/// during the change of time. This time can exceed a step, so the second part is differenced over a small fraction of a
-/// step, with the unperturbed model. \tparam V PerturbedModel or PerturbedStageModel
+/// during the change of time. This time can exceed a step, so the second part is differenced with the unperturbed model
+/// over at most ±0.8 % of a step. \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class PerturbedModels {
  public:
@@ -202,7 +203,8 @@ class PerturbedModels {
       sum += by * value;
     };
     if (j != along_motion) {
-      // Coordinates that change by more than `largest_change` are differenced apart, with a shorter distance.
+      // If a coordinate changes by more than `largest_change`, model and state are differenced separately. The
+      // distance for the state is then shorter.
       double const distance = n_.parameter(j).distance(), most = with.q.lpNorm<Eigen::Infinity>();
       bool const apart = most * distance > largest_change;
       for (std::size_t k = 0; k < points; ++k) {
@@ -278,7 +280,8 @@ class PerturbedModels {
     Index const nv = by_.balance.size();
     return mu.head(nv).dot(by_.balance) + mu.tail(by_.rows.size()).dot(by_.rows);
   }
-  /// \throws InvalidInput if a parameter changes, at x, an equation of objects outside its `affects`.
+  /// \throws InvalidInput if a parameter changes, at x, an equation of objects outside its `affects`. Parameters that
+  /// change the start time or a breakpoint are not checked.
   void require_named(State const& x) {
     for (std::size_t i = 0; i < still_.size(); ++i)
       derivatives_->require_named(i, n_.itself(), n_.perturbed(still_[i], 0), x);
@@ -337,7 +340,8 @@ class PerturbedModels {
     out.v = dt * x.a;
     return out;
   }
-  /// ∂r/∂t and ∂Φ/∂t at a point of a step, by backward differences of fourth order within the step [Fornberg 1988].
+  /// ∂r/∂t and ∂Φ/∂t at a point of a step, by backward differences of fourth order [Fornberg 1988] over 0.08 h before
+  /// the point. These times lie within the step, because the first point of every method is later than 0.15 h.
   template <class Place>
   EquationDerivative rate_of_equations(Place const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};

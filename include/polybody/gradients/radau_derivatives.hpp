@@ -31,7 +31,7 @@ namespace polybody {
 template <LinearSolver Solver = DefaultSolver>
 class RadauLinearisedStep {
  public:
-  /// Number of directions in one pass through the equations: one for each derivative of a dual number.
+  /// Largest number of directions in one pass through the equations: one for each derivative of a dual number.
   static constexpr int max_directions = SolvedPoints<Solver>::max_directions;
 
   /// The model must outlive this object. \param system with `Capabilities::implicit_step`; \param method integrator of
@@ -284,7 +284,7 @@ class RadauStepAdjoint {
   VecX mu_, y_, product_;
 };
 
-/// Derivatives of the steps of Radau, which names this class.
+/// Derivatives of the steps of Radau, as `Radau::Derivatives`.
 struct RadauDerivatives {
   template <class>
   using LinearisedStep = RadauLinearisedStep<>;  ///< linearised step

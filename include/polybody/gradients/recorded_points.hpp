@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-/// Evaluation points of a step with the multipliers of their solutions.
+/// Evaluation points of a step on a tape, with the adjoint multipliers μ of their equations.
 template <LinearSolver Solver = DefaultSolver>
 class RecordedPoints {
  public:
@@ -36,7 +36,7 @@ class RecordedPoints {
 
   /// Discards all points.
   void forget() { found_.forget(); }
-  /// Restarts the recording at the first point.
+  /// Returns to the first point. The tape remains unchanged.
   void again() { passed_.clear(); }
 
   /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.

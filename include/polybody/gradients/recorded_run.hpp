@@ -51,18 +51,18 @@ template <class = void>
 
 /// Step of a run, with the events and the breakpoint that end it.
 struct RecordedStep {
-  StepPlan::Next plan;                   ///< planned end of the step
-  double h = 0.0;                        ///< length with which the step is repeated [s]
-  double taken = 0.0;                    ///< actual length of the step, at most `h` [s]
-  double end = 0.0;                      ///< time after the step [s]
-  double far = 0.0, largest = 0.0;       ///< if an event ends the step: length without it [s], largest |event value|
+  StepPlan::Next plan;              ///< planned end of the step
+  double h = 0.0;                   ///< length with which the step is repeated [s]
+  double taken = 0.0;               ///< actual length of the step, at most `h` [s]
+  double end = 0.0;                 ///< time after the step [s]
+  double far = 0.0, largest = 0.0;  ///< if an event ends the step: length before the search [s], largest |event value|
   std::vector<std::size_t> met, acting;  ///< indices of the events that end the step, and of those with an action
   bool at_breakpoint = false;            ///< true if the step ends at a breakpoint
   bool restarts = false;                 ///< true if the integrator starts again after the step
   StepPlan::Next next;                   ///< plan of the next step, if the integrator starts again
 };
 
-/// State of the model v after the actions of some events in the state x.
+/// Reduced state of the model v after the actions of the events `acting` in the reduced state x.
 template <class V>
 State after_actions(V& v, std::vector<std::size_t> const& acting, State const& x) {
   State y = v.full_state(x);

@@ -123,7 +123,8 @@ AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I co
   return method;
 }
 
-/// Overload for Runge–Kutta methods. \throws InvalidInput for invalid parameters or options of the integrator.
+/// Runge–Kutta method for a run with derivatives. An implicit method gets a tolerance of at most 10⁻¹² and no budget of
+/// iterations. \throws InvalidInput for invalid parameters or options of the integrator.
 template <class I>
 MethodOf<I> method_of_stages(std::vector<Parameter> const& parameters, I const& integrator) {
   check(parameters);

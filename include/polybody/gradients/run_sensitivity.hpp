@@ -25,7 +25,7 @@ void add(State& sum, State const& x, double by) {
   sum.lambda += by * x.lambda;
   sum.history += by * x.history;
 }
-/// moved = x + e dx, without the integrator history.
+/// moved = x + e dx for q, v, v̇ and λ. The time and the integrator history of `moved` remain unchanged.
 template <class = void>
 void add_motion(State& moved, State const& dx, double e, State const& x) {
   moved.q = x.q + e * dx.q;
@@ -77,8 +77,8 @@ class FullStates<M, T> {
   VecXOf<T> scratch_;
 };
 
-/// Reduced state of the model v for a full state x. The velocities are projected onto the constraint equations before
-/// the elimination.
+/// Reduced state of the model v for a full state x. If the model eliminates unknowns, the velocities are first
+/// projected onto the constraint equations. Otherwise both states are the same.
 template <class V>
 [[gnu::cold]] State stepped_state(V const& v, State x) {
   if constexpr (V::Model::eliminates) {

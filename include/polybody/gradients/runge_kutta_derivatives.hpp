@@ -114,7 +114,7 @@ class RungeKuttaLinearisedStep {
   using D = typename SolvedPoints<Solver>::D;
 
  public:
-  /// Number of directions in one pass through the equations.
+  /// Largest number of directions in one pass through the equations.
   static constexpr int max_directions = SolvedPoints<Solver>::max_directions;
 
   /// The model must outlive this object. \param method integrator of the steps
@@ -222,7 +222,7 @@ class RungeKuttaStepAdjoint {
   RungeKuttaNumbers<Method, ReverseVar> recorded_;
 };
 
-/// Derivatives of the steps of explicit Runge–Kutta methods; the integrators name this class.
+/// Derivatives of the steps of explicit Runge–Kutta methods, as `Derivatives` of the integrators.
 struct RungeKuttaDerivatives {
   template <class Method>
   using LinearisedStep = RungeKuttaLinearisedStep<Method>;  ///< linearised step

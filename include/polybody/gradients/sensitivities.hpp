@@ -154,9 +154,10 @@ concept ScenarioFactory = requires(F const make, std::span<double const> p) {
 /// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator integrator of the
 /// generalised-α family, without `stabilised`; RungeKutta4, DormandPrince or Radau. Step lengths of DormandPrince are
 /// constants, unless an event, a breakpoint or the end of the run ends the step. \throws InvalidInput for invalid
-/// parameters; if models of the factory differ in size; if an event only touches zero; if an event coincides with a
-/// breakpoint or the end of the run; if two events, two breakpoints, or a breakpoint and the start or end of the run
-/// coincide and a parameter separates them; if a parameter changes equations of an object outside its `affects`.
+/// parameters; for options with step halving or minimum-norm multipliers; if models of the factory differ in size; if
+/// an event only touches zero or remains zero; if an event coincides with a breakpoint or the end of the run; if two
+/// events, two breakpoints, or a breakpoint and the start or end of the run coincide and a parameter separates them; if
+/// a parameter changes equations of an object outside its `affects`.
 /// \throws SingularMatrix in a singular configuration; and the exceptions of `simulate`.
 template <ScenarioFactory Make, class I>
 SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {

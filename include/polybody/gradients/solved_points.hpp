@@ -79,7 +79,7 @@ class SolutionPoints {
 template <LinearSolver Solver = DefaultSolver>
 class SolvedPoints {
  public:
-  /// Number of directions in one pass through the equations: one for each derivative of a dual number.
+  /// Largest number of directions in one pass through the equations: one for each derivative of a dual number.
   static constexpr int max_directions = 4;
   using D = Dual<max_directions>;  ///< value with its derivatives
   using Dots = VecXOf<Dual<4>>;    ///< vector of dual numbers

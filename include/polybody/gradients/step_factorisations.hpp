@@ -114,7 +114,7 @@ struct StepEnds {
 struct StepDirection {
   EquationDerivative by;  ///< derivatives of the equations at the end of the step
   State* dx = nullptr;    ///< derivative of the state before the step, converted in place to that after the step
-  double dh = 0.0;        ///< derivative of the step length [s]; `by` includes the change of the end time
+  double dh = 0.0;        ///< derivative of the step length [s / unit of p]; `by` includes that of the end time
 };
 
 namespace detail {
@@ -159,7 +159,7 @@ class StepFactorisations {
   using OfStep = TangentSolver<StepSolver<Solver>>;  ///< solver of the step itself
 
   /// The system must outlive this object. \param candidates kinds of factorisation; `turned` is only used if the model
-  /// has rotations
+  /// has rotations and its joints eliminate no unknowns
   [[gnu::cold]] StepFactorisations(System& system, AlphaMethod const& method,
                                    std::vector<PreconditionerChoice::Candidate> candidates)
       : system_(&system), method_(method), turned_(system), choice_(of_use(std::move(candidates))) {}

@@ -96,7 +96,9 @@ class AdamsHistory {
 ///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k.
 /// The error estimate of order j is |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. The result y₁ has order k + 1. A step needs two
 /// evaluations, and one more for each rejected trial. Coordinates on a manifold are integrated component by component,
-/// with q˙ from `coordinate_rates`, and then normalised by ⊞ 0.
+/// with q˙ from `coordinate_rates`, and then normalised by ⊞ 0. The estimate covers all coordinates and velocities.
+/// With `CoordinatePartitioning` it thus also limits the error of dependent ones, which the thesis (§3.3.1) does not
+/// integrate.
 template <class Stabilisation = UnconstrainedOnly>
 struct AdamsBashforthMoulton {
   static constexpr char const* name = "AdamsBashforthMoulton";

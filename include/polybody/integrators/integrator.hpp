@@ -24,7 +24,7 @@ struct StepReport {
   int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
   long choices = 0;          ///< selections of independent coordinates in `RungeKutta4` and `AdamsBashforthMoulton`
-  double left = 0.0;         ///< last correction as a multiple of its tolerance if the budget ended the step, else 0
+  double left = 0.0;         ///< last correction, a multiple of its tolerance, if the budget ended the step; else 0 [1]
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {

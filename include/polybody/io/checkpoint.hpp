@@ -107,8 +107,8 @@ struct SnapshotReader {
   }
 };
 
-/// Checks that the sizes in a snapshot agree with its model. A checksum does not detect inconsistent sizes that another
-/// program has written.
+/// Checks that the sizes in a snapshot agree with its model, and that no bytes follow the content (`left` is zero). A
+/// checksum does not detect inconsistent sizes that another program has written.
 /// \throws IoError otherwise.
 template <class = void>
 void require_consistent(RunSnapshot const& s, std::size_t left, std::string const& name) {

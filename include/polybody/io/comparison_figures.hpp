@@ -119,7 +119,7 @@ double mean_square(Curve const& curve) {
 }
 
 /// Converts the curves of a figure to magnitudes on a logarithmic axis, and removes curves whose values are all zero.
-/// `least` is the largest magnitude of the curve with the smallest values. Magnitudes below 1e-3·`least` are drawn at
+/// `least` is the smallest positive `largest_amount` of the curves. Magnitudes below 1e-3·`least` are drawn at
 /// 1e-3·`least`.
 template <class = void>
 void show_amounts(Figure& figure, double least) {

@@ -102,7 +102,7 @@ void write_csv(Comparison const& all, std::filesystem::path const& file) {
 
 /// Writes the histories of each run to a separate file in `folder`, history_<number>_<name>.csv. The columns are "t
 /// [s]" and the result of `histories(run)`. Returns the files in the order of the runs. Throws InvalidInput for a
-/// comparison without runs and for numbers that are not finite; IoError if a file cannot be written.
+/// comparison without complete runs and for numbers that are not finite; IoError if a file cannot be written.
 template <class = void>
 std::vector<std::filesystem::path> write_histories(Comparison const& all, std::filesystem::path const& folder) {
   Comparison const c = detail::complete_runs(all);
@@ -129,13 +129,13 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
 /// Draws the histories of all runs as figures in `folder`:
 ///   `outputs`      each output and its difference from the first run, in descending order of the relative difference
 ///   `violations`   constraint violations of positions, velocities and accelerations
-///   `joint_force`  force of the joint with the largest peak force
+///   `joint_force`  largest force of all joints at each time
 ///   `energies`     kinetic and potential energy, and change of the total energy since the start
 ///   `cost`         largest relative difference of each run from the first run, over the CPU time
 ///
 /// A page has at most six panels; further pages are `outputs_2`, …. Each page consists of the files .dat and .gp, and
 /// .png if gnuplot is found and `draw` is true. A figure without data is not written. Returns the files. Throws
-/// InvalidInput for a comparison without runs; IoError if a file cannot be written or gnuplot fails.
+/// InvalidInput for a comparison without complete runs; IoError if a file cannot be written or gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& all, std::filesystem::path const& folder,
                                                  bool draw = true) {
@@ -152,7 +152,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
   detail::draw_panels(violations, 1, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };
-  detail::draw_panels({detail::over_time(c, "Force of the joint with the largest peak force", "force [N]", force)}, 1,
+  detail::draw_panels({detail::over_time(c, "Largest force of all joints", "force [N]", force)}, 1,
                       folder / "joint_force", draw, written);
   detail::draw_panels({detail::over_time(c, "Kinetic energy", "energy [J]",
                                          [](Run run, std::size_t k) { return run.energies[k].kinetic; }),
@@ -180,7 +180,8 @@ std::vector<std::filesystem::path> write_report(Comparison const& all, std::file
   return written;
 }
 
-/// Writes the points of all completed runs to `file`, one row per point. Throws IoError if the file cannot be written.
+/// Writes the points of all completed runs to `file`, one row per point. Throws InvalidInput for numbers that are not
+/// finite; IoError if the file cannot be written.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::full_table);

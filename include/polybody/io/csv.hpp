@@ -23,8 +23,8 @@ namespace polybody {
 
 /// Writer of a table: a head line, then rows of numbers in the shortest form that reads back to the same double. A
 /// single quote precedes a text that begins with =, +, - or @, so that a spreadsheet does not evaluate it. The file
-/// appears under its name on `close()` (see AtomicFile). If an exception interrupts the writing, the file appears with
-/// the rows written so far, if there are any (see `Keeps`). Move-only.
+/// appears under its name on `close()` (see AtomicFile). If an exception interrupts the writing, `Keeps` determines
+/// whether a file with the rows written so far appears. Move-only.
 class Csv {
  public:
   /// Result if an exception interrupts the writing. `rows`: a file with the rows written so far, if there are any.
@@ -79,7 +79,7 @@ class Csv {
     for (auto const& head : columns) {
       if (head.empty())
         throw InvalidInput("table.columns", {"file \"", ErrorObject{file.string()}, "\": the head of column ",
-                                             std::size_t(&head - columns.data()) + 1, " is empty."});
+                                             std::size_t(&head - columns.data()) + 1, ", counted from 1, is empty."});
       if (!seen.insert(head).second)
         throw InvalidInput("table.columns",
                            {"file \"", ErrorObject{file.string()}, "\": duplicate column \"", head, "\"."});

@@ -201,7 +201,7 @@ class EqualErrorCharts {
            " of the span (" + readable(run.error) + unit_ + ")\nCPU time " + readable(run.cpu) + " s";
   }
 
-  /// Adds the curves of the runs for which `size(f, run)` is positive, over this size. The labels contain the order.
+  /// Adds the curves of the runs for which `size(f, run)` is positive, over this size. The legend contains the order.
   template <class Size>
   void add_convergence(Chart& chart, Size const& size) const {
     chart.log_x = chart.log_y = true;
@@ -241,7 +241,7 @@ class EqualErrorCharts {
     for (ChartCurve const& c : chart.curves)
       add(r_.formulations[c.key].spread, r_.formulations[c.key].name + ", change by round-off", c.key);
     chart.note +=
-        std::string(vertical ? " A broken line is a wanted error." : "") +
+        std::string(vertical ? " A dashed line is a wanted error." : "") +
         " A dotted line is the error bound of a reference, or a change by round-off. Smaller errors are uncertain.";
   }
 

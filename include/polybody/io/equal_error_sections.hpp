@@ -200,7 +200,7 @@ class EqualErrorPage {
 
   std::string curves() const {
     std::string content =
-        "<p>CPU times are medians of repeated runs, or of a single run if a run is in no ranking. "
+        "<p>CPU times are medians of repeated runs. A run that is in no ranking is not repeated. "
         "The names below a chart hide and show its curves.</p>\n";
     if (Chart const work = charts_.work(); work.curves.empty())
       content = "<p>No run has a known error. See the remarks.</p>\n";

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Film of a run as one HTML file that plays in any browser, without a network.
+/// Film of one or more runs as one HTML file that plays in any browser, without a network.
 
 #include <algorithm>
 #include <array>

@@ -123,7 +123,8 @@ class FilmScene {
   bool due(double t) const { return times_.empty() || t >= next_ - 1e-9; }
 
   /// Records a frame of `parts` at time t [s].
-  /// \throws InvalidInput unless times increase and the parts are the same as in the first frame.
+  /// \throws InvalidInput if there are no parts, if t does not exceed the time of the last frame, if the parts differ
+  /// from those of the first frame, or if a scalar has another number of values than a part has points.
   /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
     if (!std::isfinite(t))

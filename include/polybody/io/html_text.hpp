@@ -84,8 +84,8 @@ std::string fixed_text(double x, int places) {
   return negative ? "−" + out : out;
 }
 
-/// Number with `digits` significant digits: "0.00410", "350", "1.20 × 10⁻⁷"; "–" if x is not finite. The text has no
-/// line break.
+/// Number with at least `digits` significant digits: "0.00410", "350", "1.20 × 10⁻⁷"; "–" if x is not finite. The text
+/// has no line break.
 template <class = void>
 std::string readable(double x, int digits = 3) {
   if (!std::isfinite(x)) return "–";

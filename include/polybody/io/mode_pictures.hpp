@@ -196,8 +196,8 @@ std::vector<std::string> mode_titles(VecX const& frequency) {
 /// Displacements are linear, so large rotations look stretched. Writes `stem`.dat, .gp and, if gnuplot is on PATH, .png
 /// (see `write_panels`). `shapes` (nv×k) are the shapes of `modes` or `buckling_modes`, or the real parts of damped
 /// modes.
-/// \throws InvalidInput for shapes of another model, for a size that is not positive, for parallel view directions, and
-/// for a visual without shapes; IoError if a file cannot be written.
+/// \throws InvalidInput for shapes without columns or of another model, for a size that is not positive, for parallel
+/// view directions, and for a visual without shapes; IoError if a file cannot be written or gnuplot fails.
 template <class = void>
 DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::filesystem::path const& stem,
                        ModePictureOptions const& options = {}) {

@@ -139,7 +139,8 @@ std::string data_text(std::vector<Figure> const& figures) {
   return text;
 }
 
-/// Number of digits for the tick labels of an axis from `low` to `high`: six, or more for a small span far from zero.
+/// Number of digits for the tick labels of an axis from `low` to `high`: six, or more if the span is less than 1e-3 of
+/// the larger magnitude.
 template <class = void>
 std::string tick_digits(double low, double high) {
   double const share = std::max(std::abs(low), std::abs(high)) / std::abs(high - low);
@@ -195,8 +196,9 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 
 /// Draws several figures in one PNG, row by row in `columns` columns. Each panel has the size of the largest figure.
 /// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` is true and gnuplot is on PATH, .png.
-/// Each file appears when it is complete. Throws InvalidInput with the names of the figure and the curve, before it
-/// writes a file; IoError if writing or gnuplot fails.
+/// Each file appears when it is complete. Before it writes a file, throws InvalidInput for an empty name or
+/// one with control characters, for no figure or column, for a picture above 30000 pixels, and for a figure that
+/// cannot be drawn, with the names of the figure and the curve. Throws IoError if writing or gnuplot fails.
 template <class = void>
 DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
                         bool draw = true) {

@@ -40,7 +40,7 @@ inline bool stderr_is_terminal() {
 /// Nothing is drawn if stderr is not a terminal. Not thread-safe.
 class Progress {
  public:
-  using Clock = std::function<double()>;  ///< returns a time [s] from any origin that never decreases
+  using Clock = std::function<double()>;  ///< returns a time [s] that never decreases, from any origin
 
   /// Progress bar with this `label` from `start` to `end`, in the unit of the argument of `update`, such as simulated
   /// time [s]. `start` may be greater than `end`. Throws InvalidInput if `start` or `end` is not finite.

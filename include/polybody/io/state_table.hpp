@@ -168,9 +168,9 @@ Table state_table(M const& model, std::vector<State> const& states) {
   return detail::state_table(layout_of(model), states);
 }
 
-/// Returns the state in a `row` of a table. The table contains the columns of `state_columns` in any order, with or
-/// without units, and possibly other columns. Columns of multipliers are optional; missing multipliers are zero.
-/// Accelerations are zero. `simulate` computes multipliers and accelerations.
+/// Returns the state in a `row`, counted from 0, of a table. The table contains the columns of `state_columns` in any
+/// order, with or without units, and possibly other columns. Columns of multipliers are optional; missing multipliers
+/// are zero. Accelerations are zero. `simulate` computes multipliers and accelerations.
 /// \throws InvalidInput with the name of a column that is missing, duplicate or in another unit, and for a row that
 /// does not exist.
 template <class M>

@@ -42,7 +42,7 @@ double volume(Surface const& surface) {
 
 /// Outline of a bar's section as a polygon (y, z) [m], counter-clockwise as seen from +x. A circle becomes a polygon of
 /// the same area with this number of `sides`.
-/// \throws InvalidInput for a bar without a section, or fewer than three sides.
+/// \throws InvalidInput for a bar without a section, or fewer than three sides of a circle.
 template <class = void>
 std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
   if (auto const* r = std::get_if<Rectangle>(&bar.section)) {

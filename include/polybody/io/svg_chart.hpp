@@ -27,7 +27,7 @@ class ChartAxis {
  public:
   /// Axis for `values` from the position `first` to the position `last` [units of the picture]. Values that are not
   /// finite, or not positive on a logarithmic axis, are omitted. `margin` is the distance of the extreme values from
-  /// the ends, relative to their distance. `marks` are the values of the labels; empty: the axis chooses them.
+  /// the ends, relative to the range of the values. `marks` are the values of the labels; empty: the axis chooses them.
   ChartAxis(std::vector<double> const& values, bool logarithmic, std::pair<double, double> ends, double margin = 0.06,
             std::vector<double> marks = {})
       : logarithmic_(logarithmic), first_(ends.first), last_(ends.second), margin_(margin) {
@@ -73,7 +73,7 @@ class ChartAxis {
     }
   }
 
-  /// Labels at the given values of a horizontal axis, as far as they have space.
+  /// Ticks at the given values of a horizontal axis. A label that would overlap the previous one is omitted.
   void mark(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -92,7 +92,8 @@ class ChartAxis {
     }
   }
 
-  /// Labels at the decades; less than two decades also have labels at 2 and 5, and a short range has even distances.
+  /// Labels at the decades, or at every n-th decade of a wide range. An axis of less than 1.6 decades also has labels
+  /// at 2 and 5 times the decades. If these labels are fewer than two, equidistant labels replace them.
   void mark_decades() {
     bool const few = high_ - low_ < 1.6;
     bool const plain = high_ < 4.5 && low_ > -4.0;
@@ -116,8 +117,8 @@ class ChartAxis {
     return (k == 1 ? std::string() : std::to_string(k) + "·") + "10" + superscript(decade);
   }
 
-  /// Labels at multiples of 1, 2 or 5 times a power of ten. Large or small numbers have a common factor, and numbers
-  /// far from zero a common offset.
+  /// Labels at multiples of 1, 2 or 5 times a power of ten. If the middle of the axis exceeds 2000 times its range, the
+  /// labels have a common offset. If the largest label is at least 1e5 or below 0.01, the labels have a common factor.
   void mark_evenly(double low, double high) {
     double const least = (high - low) / 6.0, power = std::pow(10.0, std::floor(std::log10(least)));
     double step = 10.0 * power;
@@ -268,7 +269,7 @@ class ChartDrawing {
     return out;
   }
 
-  /// Points of a line that are visible at the resolution of the picture: within a unit of x only the extremes.
+  /// Points of a line. From 1000 points on, only the lowest and the highest point within each unit of x remain.
   std::vector<std::array<double, 2>> polyline(ChartCurve const& c, double shift) const {
     std::vector<std::array<double, 2>> all, out;
     for (std::size_t i = 0; i < std::min(c.x.size(), c.y.size()); ++i)

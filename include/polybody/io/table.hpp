@@ -77,7 +77,7 @@ struct CsvReader {
   }
 
   /// Returns the next record, which is empty at the end of the text. `at` becomes the line in which the record
-  /// begins. Blank lines, and blanks around an unquoted field, are skipped.
+  /// begins. Blank lines are skipped, and blanks around a field outside of its quotes.
   std::vector<std::string> record(std::size_t& at) {
     while (!text.empty() && (text.front() == '\n' || text.front() == '\r')) step();
     at = line;
@@ -135,7 +135,7 @@ struct CsvReader {
 /// Reads a table from `file`, written by `Csv` or another program. Accepts lines that end with LF, CR LF or CR, quoted
 /// fields, a byte-order mark, a leading '+' and blank lines. Removes a single quote before =, +, - or @ at the
 /// beginning of a head. Throws IoError with the file and, if possible, the line. The reasons are a file that cannot be
-/// read or is empty, rows of different lengths, and fields that are not finite numbers.
+/// read or is empty, faulty quotes, rows of different lengths, and fields that are not finite numbers.
 inline Table read_csv(std::filesystem::path const& file) {
   std::string const name = file.string();
   errno = 0;

@@ -42,7 +42,7 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 ///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   fixed to the marker's frame
 ///   visual.sweep(beam, bar, 20);                            the bar's section along the deformed body
 ///   for (VisualPart const& part : visual.at(x)) ...
-/// The model must outlive this object and must not change during its life.
+/// The model must outlive this object, and must not change meanwhile.
 class Visual {
  public:
   /// Geometry of a complete model, without shapes.

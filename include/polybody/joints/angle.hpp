@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Constraint functions of angles. A vector with the components x and y along the first two axes of frame a has the
-/// angle θ = atan2(y, x). x and y are constraint functions of constraint_functions.hpp:
+/// angle θ = atan2(y, x), where x and y are constraint functions of constraint_functions.hpp. The rate of the angle is
 ///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
 /// Angles are compared modulo a full turn, so that no data are stored between steps.
 

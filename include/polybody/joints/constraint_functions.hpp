@@ -7,7 +7,7 @@
 ///   distance            g = |d| − L
 /// γ is the part of g̈ that does not depend on the accelerations of the frames. [Haug 1989, §2.4 and §9.4; thesis Eq.
 /// 3.8–3.10 and §3.5.1]
-/// A joint geometry is an `EquationList` of these equations.
+/// Most joint geometries are an `EquationList` of these equations.
 
 #include <algorithm>
 

@@ -73,7 +73,7 @@ RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
 template <class G>
 concept HasEquationList = requires { G::Equations::rows; };
 
-/// Number of constraint equations of a geometry: its member `rows`, or that of its list; zero without both.
+/// Number of constraint equations of a geometry: its member `rows`, or that of its list; zero if both are missing.
 template <class G>
 constexpr int constraint_equations() {
   if constexpr (requires { G::rows; })
@@ -127,10 +127,10 @@ concept ConstraintFunction = requires {
   requires HasEquationList<G> || HasOwnConstraintFunction<G>;
 };
 
-/// Geometry of a joint: its constraint function measures the motions that the joint prevents. Its markers get axes that
-/// coincide at the reference configuration: `triad()` in world axes, with the joint axis as the third. Optional members
-/// are `check(name)`, which `connect` calls with the joint's name, and `breakpoints()`, times at which steps end.
-/// `docs/extending.md` lists all members.
+/// Geometry of a joint: its constraint function measures the motions that the joint prevents. The markers of the joint
+/// get axes that coincide at the reference configuration: `triad()` in world axes. For most joints in space the third
+/// axis is the joint axis. Optional members are `check(name)`, which `connect` calls with the joint's name, and
+/// `breakpoints()`, times at which steps end. `docs/extending.md` lists all members.
 template <class G>
 concept JointGeometry = ConstraintFunction<G> && requires(G const g) {
   { G::name } -> std::convertible_to<char const*>;

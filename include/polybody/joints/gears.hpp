@@ -23,10 +23,11 @@ struct Gear {
 
   static constexpr int most_teeth = 1'000'000;  ///< largest magnitude of a number of teeth
 
-  Required<int> teeth_a;   ///< number of teeth N_a
-  Required<int> teeth_b;   ///< number of teeth N_b; negative for an internal (ring) gear
-  TurnAxis axis = {};      ///< (3) unit vector of the axes of both wheels, world axes at the reference configuration
-  JointAxis centres = {};  ///< (3) unit vector from centre a to centre b, perpendicular to `axis`; axes as for `axis`
+  Required<int> teeth_a;  ///< number of teeth N_a; negative for an internal (ring) gear
+  Required<int> teeth_b;  ///< number of teeth N_b; negative for an internal (ring) gear
+  TurnAxis axis = {};     ///< (3) unit vector of the axes of both wheels, world axes at the reference configuration
+  /// (3) unit vector from centre a to centre b, perpendicular to `axis`, world axes at the reference configuration
+  JointAxis centres = {};
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {
@@ -121,7 +122,7 @@ struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr World world = World::both;
 
-  Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side of axis × direction
+  Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side axis × direction of the pinion
   TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
   using Equations = EquationList<TranslationPerRotation<0, &RackAndPinion::radius>>;

@@ -10,7 +10,7 @@
 
 namespace polybody::detail {
 
-// Error messages for types that are not a geometry or not a policy; each names the missing member.
+// Error messages for invalid types of geometries and policies. Each message names the missing member.
 
 template <class P, int m>
 concept HasMultiplier = requires(P const p, Vec<double, m> const g) {
@@ -106,7 +106,7 @@ template <class P>
 constexpr auto default_policy() {
   static_assert(std::is_default_constructible_v<P>,
                 "The parameters of this policy have no default values. Give them after the geometry: "
-                "Joint<Revolute, Penalty>{Revolute{}, {.stiffness = 1e8, .damping = 1e4}}.");
+                "Joint<Revolute, Penalty>{Revolute{.axis = axis}, {.stiffness = 1e8, .damping = 1e4}}.");
   if constexpr (std::is_default_constructible_v<P>) return P{};
 }
 }  // namespace detail

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Direction of a joint. There is no default direction: `connect` refuses a joint without a direction.
+/// Direction of a joint. There is no default direction: `connect` refuses a joint without a direction, unless the
+/// direction is the rotation axis of a planar model.
 
 #include <polybody/joints/constraint_functions.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Kinematics of markers: the interface between bodies on one side, joints and forces on the other.
+/// Frames and wrenches of markers, through which bodies exchange data with joints and forces, and placements of bodies.
 
 #include <polybody/math/quaternion.hpp>
 
@@ -40,7 +40,7 @@ enum class MarkerKind { point, axis, frame };
 /// Dimension of a body: plane or space. A joint connects bodies of equal dimension; the ground has both dimensions.
 enum class World { plane, space, both };
 
-/// True if bodies of the dimensions a and b can be connected: both plane, both space, or at least one the ground.
+/// True if bodies of the dimensions a and b can be connected: both plane, both space, or one of them the ground.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
 /// Initial position and orientation of a body in the world.
@@ -59,8 +59,9 @@ struct Placement {
     return {origin, exp_so3<double>(rotation)};
   }
 
-  /// \throws InvalidInput naming `what` unless the placement is finite, its coordinates are at most `largest_number`,
-  /// and its axes are orthonormal and right-handed.
+  /// Checks the placement.
+  /// \throws InvalidInput naming `what` unless the coordinates of the origin have magnitudes up to `largest_number`,
+  /// and the axes are right-handed and orthonormal to 1e-9.
   template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     require_finite(origin, what, ": the placement's origin");
@@ -83,12 +84,14 @@ struct Placement {
       throw InvalidInput(
           "placement.axes",
           {ErrorObject{what}, ": the placement's axes must be orthonormal and right-handed, but |A'A - 1| is ",
-           ErrorValue{std::sqrt(off)}, " (at most 1e-9) and the determinant is ", determinant,
-           " (one). Normalise the columns and make them orthogonal; if the determinant is negative, reverse one."});
+           ErrorValue{std::sqrt(off)}, " (limit: 1e-9) and the determinant is ", determinant,
+           " (required: 1). Normalise the columns and make them orthogonal; if the determinant is negative, reverse "
+           "one."});
   }
 
   /// Angle about world z of a planar placement [rad].
-  /// \throws InvalidInput if the placement is not in the plane z = 0.
+  /// \throws InvalidInput if the origin is not in the plane z = 0, or if the axes are rotated about another axis than
+  /// z.
   template <class = void>  // compiled where it is used
   double planar_angle(std::string const& what) const {
     check(what);

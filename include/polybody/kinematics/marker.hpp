@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Markers, material points of a body in a model, and handles of bodies.
+/// Markers (material points of a body in a model), and handles of bodies, which create markers.
 
 #include <cstdint>
 #include <initializer_list>
@@ -172,8 +172,8 @@ struct BodyHandle {
   {
     return named([](B const& on) { return on.centre(); });
   }
-  /// Compile-time message for numbers in braces that are not a point of the body's function `at`. For an invalid x
-  /// without braces, `requires { handle.at(x); }` remains false.
+  /// Overload for numbers in braces that the body's function `at` does not accept; it yields a compile-time message.
+  /// For an invalid x without braces, `requires { handle.at(x); }` remains false.
   template <class Body = B>
     requires(
         !requires(B const b, Vec3 p) { b.at(p); } && !requires(B const b, Vec2 p) { b.at(p); })

@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Checksum of a text, which detects accidental changes of files.
 #include <cstdint>
 #include <string_view>
 

@@ -9,7 +9,7 @@
 namespace polybody {
 
 /// Values of `n` shape functions of an element of length l, and their derivatives with respect to the arc length
-/// x = ξ l [m]. Units of derivatives are those of shape functions without unit.
+/// x = ξ l [m]. The units hold for shape functions without unit.
 template <int n>
 struct ShapeValues {
   std::array<double, n> s;    ///< values s

@@ -154,7 +154,7 @@ struct Message {
   return detail::Message("", parts).text;
 }
 
-/// Base class of all exceptions that polybody throws. It is constructed from a code and the parts of its text:
+/// Base class of the exceptions of polybody. It is constructed from a code and the parts of its text:
 /// `throw InvalidInput("rigid.mass", {"The mass must be positive, but is ", ErrorValue{mass}, " kg."})`.
 /// The code, the object, the value and the time let a program distinguish errors without reading the text.
 class Error : public std::runtime_error {
@@ -216,26 +216,28 @@ class InvalidInput : public Error {
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// Initial state that violates a constraint equation; `assemble` corrects it.
+/// The initial state violates a constraint equation, or constraint equations contradict each other. `assemble` corrects
+/// a violation.
 class InconsistentInitialConditions : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// Newton's method did not converge. The run keeps the state at the start of the step.
+/// Newton's method did not converge, or a step jumps over a contact or gains energy without work. The run keeps the
+/// state at the start of the step.
 class NewtonConvergenceFailure : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// The step converged, but constraint equations are violated or the energy changed without work. The run keeps the
+/// The step converged, but constraint equations are violated or the energy increased without work. The run keeps the
 /// state at the start of the step.
 class Diverged : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// A point that slides along a body has passed the end of the body.
+/// A slider is more than one element length beyond an end of its body.
 class SliderOutOfRange : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
@@ -247,7 +249,7 @@ class MinimumStepReached : public Error {
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// A force, mass or coordinate is NaN or infinite.
+/// A computed number, such as a force, coordinate or output, is NaN, infinite or beyond `largest_number`.
 class NonFiniteValue : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`
@@ -259,7 +261,7 @@ class SingularMatrix : public Error {
   using Error::Error;  ///< same constructors as `Error`
 };
 
-/// A file could not be read or written.
+/// A file could not be read or written, or another program or rank failed.
 class IoError : public Error {
  public:
   using Error::Error;  ///< same constructors as `Error`

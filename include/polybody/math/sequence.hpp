@@ -88,7 +88,7 @@ class Sequence {
   bool empty() const { return size_ == 0; }                      ///< true if there are no values
   T& operator[](std::size_t i) { return data_[i]; }              ///< value i; the range of i is not checked
   T const& operator[](std::size_t i) const { return data_[i]; }  ///< value i, read-only
-  /// Value number `i`. \throws std::out_of_range
+  /// Value number `i`. \throws std::out_of_range unless i < size().
   T& at(std::size_t i) { return data_[within(i)]; }
   T const& at(std::size_t i) const { return data_[within(i)]; }  ///< value number `i`, read-only
   T& front() { return *data_; }                                  ///< first value; the array must not be empty
@@ -96,7 +96,7 @@ class Sequence {
   T& back() { return data_[size_ - 1]; }                         ///< last value; the array must not be empty
   T const& back() const { return data_[size_ - 1]; }             ///< last value, read-only
 
-  /// Allocates memory for `capacity` values in total and moves the values there.
+  /// Ensures memory for `capacity` values in total. If the memory is too small, all values move to new memory.
   void reserve(std::size_t capacity) {
     static_assert(std::is_nothrow_move_constructible_v<T>, "a value in a Sequence must move without throwing");
     if (capacity <= capacity_) return;

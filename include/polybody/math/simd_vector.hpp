@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// SIMD vectors: several numbers in one register. Each number belongs to a different finite element of the same type.
-/// Each operation applies to all numbers at once. A kernel that is a template of its scalar and has no branches on
-/// values also compiles for SIMD vectors.
+/// SIMD vectors: several numbers in one register. Each operation applies to all numbers at once. In the kernel of an
+/// element, each number belongs to a different finite element of the same type. A kernel that is a template of its
+/// scalar and has no branches on values also compiles for SIMD vectors.
 
 #include <Eigen/Core>
 #include <array>

@@ -40,7 +40,8 @@ struct ShiftedPencil {
 
 /// Solves K x = λ M x with K + τM = L Lᵀ. The squared pivots L_ii² are at least 1e-8 of the diagonal entries of K + τM.
 /// The errors of L then remain below those of the entries of K. The shift τ is the first of 0, t, 64 t, 64² t … that
-/// yields such pivots; t is 1e-12 of the smallest nonzero |K_ii|/M_ii. `found` is false if 16 shifts fail.
+/// yields such pivots; t is 1e-12 of the smallest nonzero |K_ii|/M_ii. `found` is false if 16 shifts fail, or
+/// if no i has M_ii > 0 and K_ii ≠ 0.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite
 template <class = void>  // compiled where it is used
 ShiftedPencil by_shift(MatX const& k, MatX const& m) {

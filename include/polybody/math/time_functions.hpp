@@ -61,7 +61,7 @@ std::vector<double> breakpoints_of(Law const& law) {
 }
 
 /// Checks a function of time that prescribes a motion. \throws InvalidInput for invalid values, and if the value is
-/// discontinuous.
+/// discontinuous at a breakpoint.
 template <TimeFunction Law>
 void check_driving_function(Law const& law, std::string const& what) {
   check_time_function(law, what);
@@ -106,12 +106,12 @@ inline void check_ramp(double target, double duration, double start, std::string
 
 }  // namespace detail
 
-/// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
-/// At a breakpoint the value is that of the following piece.
+/// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. Without `rounding` the rate is
+/// discontinuous at both ends, which are the breakpoints. At a breakpoint the rate is that of the following piece.
 ///
-/// With `rounding` w, a parabola replaces the ramp from w/2 before to w/2 after each breakpoint t₀. At the first
-/// breakpoint, value = (target/duration) s²/(2w), s = t − t₀ + w/2. Only the acceleration is then discontinuous. After
-/// both parabolas, value and integral equal those without rounding.
+/// With `rounding` w, a parabola replaces the ramp from w/2 before to w/2 after each end t₀. At the first end,
+/// value = (target/duration) s²/(2w), s = t − t₀ + w/2. Only the acceleration is then discontinuous. After both
+/// parabolas, value and integral equal those without rounding.
 struct Ramp {
   Required<double> target;    ///< final value [m] or [rad]
   Required<double> duration;  ///< duration of the ramp [s]

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Threads that share loops. A loop is divided into one contiguous part per thread. If each index writes to its own
-/// memory, the results do not depend on the number of threads.
+/// Threads that share loops. A loop is divided into at most one contiguous part per thread. If each index writes to its
+/// own memory, the results do not depend on the number of threads.
 
 #include <algorithm>
 #include <atomic>
@@ -34,7 +34,7 @@ class ParallelBody {
   void (*call_)(void const*, Index, Index);
 };
 
-/// Threads that share the loops of an evaluation. Results do not depend on the number of threads.
+/// Threads that share the loops of an evaluation.
 class Workers {
  public:
   static constexpr int most = 4096;  ///< largest number of threads
@@ -143,8 +143,7 @@ class Workers {
 };
 
 /// Calls f(begin, end) for parts of [0, n) on the threads of `workers`. The number of parts is n/`least`, limited to
-/// the
-/// range from one to the number of threads. Calls f(0, n) if `workers` is null.
+/// the range from one to the number of threads. Calls f(0, n) if `workers` is null.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
   ParallelBody const body(f);

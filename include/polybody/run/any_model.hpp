@@ -28,7 +28,7 @@ inline constexpr char integrator_tag = 0;
 /// bodies and joints for their handles.
 class AnyModel {
  public:
-  /// Stores the model, and functions that evaluate M and step it with each of the integrators Is.
+  /// Stores the model, and functions that evaluate the model and step it with each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
       : reference_(model->reference_state()), system_(&questions<M>), problem_size_(polybody::problem_size(*model)) {
@@ -38,7 +38,7 @@ class AnyModel {
 
   State const& reference_state() const { return reference_; }  ///< state with the bodies as built, at rest
   ProblemSize const& counts() const { return problem_size_; }  ///< problem size at construction
-  /// System of the full model, with the evaluation of motion and energies.
+  /// System of the full model, for energies, powers and momenta of its states.
   System system() const { return system_(model_.get()); }
   SystemSource source() const { return {system_, model_.get()}; }  ///< source of systems of the full model
 

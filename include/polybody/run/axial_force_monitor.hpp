@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Warnings of large axial forces in beams of `Ffr` without geometric stiffening, whose deflection neglects these
-/// forces.
+/// Warnings of axial forces of at least 5 % of the buckling load, in beams of `Ffr` without geometric stiffening. The
+/// deflection of these beams neglects axial forces.
 
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@
 
 namespace polybody {
 
-/// Evaluates axial forces fifty times in a run. Keeps only the warning of the largest axial force relative to the
-/// buckling load.
+/// Evaluates axial forces about fifty times in a run, at the ends of steps. Keeps only the warning of the largest axial
+/// force relative to the buckling load.
 class AxialForceMonitor {
  public:
   static constexpr double worth_warning = 0.05;  ///< smallest reported fraction of the buckling load [1]

@@ -90,7 +90,7 @@ BodySample motion_of_centre(BodyLayout const& place, State const& x) {
 ///   for (State const& now : simulate(model, x, …)) recorder.record(now);
 ///   recorder.of(link)   the record
 /// The loads are −Gᵀλ of each joint on both of its markers [thesis Eq. 3.3, 4.4] and the wrenches of force elements.
-/// Each sample satisfies m a = Σ F to the accuracy of the integrator.
+/// Each sample satisfies m (a − g) = Σ f to the accuracy of the integrator, with the gravity g and the loads f.
 template <class = void>  // compiled only if used
 class LoadRecorderOf {
  public:

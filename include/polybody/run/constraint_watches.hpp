@@ -69,7 +69,8 @@ class RedundancyWatch {
       throw;
     }
   }
-  /// True if the violation of a dropped equation is much larger than the violation of all others.
+  /// True if the violation of a dropped equation exceeds 1e-8 (1 + max |q|) plus 100 times the largest violation of the
+  /// other equations.
   static bool is_open(System& system, std::span<Index const> left_out, State const& x) {
     VecX phi = VecX::Zero(system.rows());
     system.evaluate(x.q, x.v, x.t);
@@ -95,8 +96,8 @@ class BranchWatch {
   }
 
   /// Adds a warning if the step ends at a state x near a singular configuration. Only the first warning of a run is
-  /// added. Steps are examined only if they changed the velocities by more than a tenth of their norm and factorised a
-  /// matrix.
+  /// added. A step is examined only if it factorised a matrix and changed the velocities by more than a tenth of the
+  /// norm of `v`.
   /// \param v velocities before the step
   /// \param warnings warnings of the run
   template <class Solver>

@@ -30,7 +30,8 @@ struct Diagnosis {
     std::string integrator;  ///< name of the integrator
     double step;             ///< largest stable step without damping [s]
   };
-  std::vector<StableStep> stable_steps = {};  ///< for each explicit integrator; empty without elasticity
+  /// Steps for `SymplecticEuler`, `CentralDifference` and `RungeKutta4`. Empty without elasticity.
+  std::vector<StableStep> stable_steps = {};
 };
 
 namespace detail {

@@ -21,11 +21,12 @@ struct Event {
   /// is detected. At the start of a run, an event with an action and a value of zero occurs immediately, unless the
   /// value increases.
   std::function<void(State&)> action = {};
-  /// Impacts accumulate if they follow each other within `tolerance`: a ball with a restitution below one comes to
-  /// rest. Without `rests`, the run then throws InvalidInput. With `rests`, the value is held at zero from this time
-  /// on: coordinates and velocities are projected onto value = 0 after each step, in the mass norm. The value is
-  /// released if it has, at the end of a step, the sign that it had before the event. Accelerations and multipliers do
-  /// not include the force that holds the value.
+  /// Treatment of impacts that accumulate: ten repetitions, each within `tolerance` of the preceding impact, or 1000
+  /// impacts within one step length. One repetition is enough if the rate of the value is zero after an impact. A ball
+  /// with a restitution below one comes to rest in this way. If `rests` is false, the run then throws InvalidInput. If
+  /// `rests` is true, the value is held at zero from this time on: coordinates and velocities are projected onto value
+  /// = 0 after each step, in the mass norm. The value is released when a step ends with the sign that the value had
+  /// before the event. Accelerations and multipliers do not include the force that holds the value.
   bool rests = false;
 };
 

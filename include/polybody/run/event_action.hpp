@@ -99,16 +99,17 @@ template <LinearSolver Solver>
 
 }  // namespace detail
 
-/// Holds the values of resting events at zero in a state x of the `full` model. Then applies the actions of the events
+/// Holds event values at zero (`Event::rests`) in a state x of the `full` model. Then applies the actions of the events
 /// that occurred in the last step, one after the other. \param tolerance limit of the constraint violation after an
 /// action
-/// \throws InvalidInput if an action changes the sizes of x, or leaves values that are not finite or a violated joint.
+/// \throws InvalidInput if a value cannot be held at zero, or if an action changes the sizes of x, violates a joint, or
+/// makes a coordinate or velocity not finite.
 template <LinearSolver Solver = DefaultSolver>
 [[gnu::cold]] void act(EventDetector const& watch, std::vector<Event> const& events, State& x, System& full,
                        double tolerance) {
   if (watch.first_held() < events.size()) {
     ForwardDynamics<Solver> forward(full);
-    for (int sweep = 0; sweep < 3; ++sweep)  // events that rest at the same time affect each other
+    for (int sweep = 0; sweep < 3; ++sweep)  // values that are held at the same time affect each other
       for (std::size_t i = 0; i < events.size(); ++i)
         if (watch.held(i)) detail::hold(events[i], full, forward, x);
   }
@@ -121,7 +122,8 @@ template <LinearSolver Solver = DefaultSolver>
   }
 }
 
-/// Applies the actions of the `events` that occurred last to the user's state x, and returns the integrated state.
+/// Applies the actions of the `events` that occurred in the last step to the full state x. Returns the integrated
+/// state.
 /// \param systems integrated system; full system, or null if no joints are eliminated. With a full system, velocities
 /// are projected onto its constraint equations before the elimination. \param tolerance limit of the constraint
 /// violation after an action [m], [rad]

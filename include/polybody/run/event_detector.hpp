@@ -110,12 +110,12 @@ struct EventPlace {
   bool known = false;     ///< true if `value` is set
   double value = 0.0;     ///< value at the end of the last step, unit of the event
   double rate = 0.0;      ///< mean rate of the value over the last step [unit of the event/s]
-  double span = 0.0;      ///< length of that step [s]; 0 after a start
+  double span = 0.0;      ///< length of the last step [s]; 0 after a start or an event
   double acted = -never;  ///< time of the last action [s]
   double since = -never;  ///< time from which `actions` are counted [s]
   int actions = 0;        ///< number of actions from `since` on
   int repeats = 0;        ///< consecutive actions, each within the tolerance of the preceding one
-  bool stays = false;     ///< true if the rate of the value is zero after the last action
+  bool stays = false;     ///< true if |rate| of the value after the last action is at most 1e-3 times `scale`
   double scale = 0.0;     ///< |rate| of the value at the last event [unit of the event/s]
   double off = 0.0;       ///< |value| at the last event, unit of the event
 
@@ -214,7 +214,7 @@ class EventDetector {
   }
 
   bool met(std::size_t i) const { return met_[i] == 1; }   ///< event i occurred in the last examined step
-  bool held(std::size_t i) const { return met_[i] == 2; }  ///< event i must be held at zero at the end of that step
+  bool held(std::size_t i) const { return met_[i] == 2; }  ///< value i must be held at zero at the end of the last step
   /// True if an event value is held at zero over several steps.
   bool rests() const {
     for (EventPlace const& place : places_)

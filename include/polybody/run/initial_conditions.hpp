@@ -81,7 +81,7 @@ struct RelativeViolation {
       if (block.row < 0 || block.source != ConstraintSource::joint) continue;
       Box const* const box = box_of(layout.joints[std::size_t(block.owner)]);
       if (!box) continue;
-      // absolute violations: those within round-off, and those that are large enough to affect the extent
+      // absolute: violations within round-off, and violations above 1 % of the extent, which they then affect
       double const of_box = box->extent(), rounding = 16.0 * std::numeric_limits<double>::epsilon() * box->farthest();
       for (int i = 0; i < block.rows; ++i) {
         double const open = std::abs(absolute[block.row + i]);
@@ -114,7 +114,8 @@ template <class = void>
   if (by > tolerance)
     throw InconsistentInitialConditions("initial_state.violation",
                                         {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by},
-                                         " (m or rad). Place the bodies so that the violation vanishes, or call "
+                                         " (m or rad), but the limit is ", tolerance,
+                                         ". Place the bodies so that the violation vanishes, or call "
                                          "assemble(model, x)."});
   throw InconsistentInitialConditions(
       "initial_state.violation",
@@ -123,8 +124,8 @@ template <class = void>
        " m of its assembly. Place the bodies so that the violation vanishes, or call assemble(model, x)."});
 }
 
-/// \throws InconsistentInitialConditions if redundant equations contradict each other, so that no configuration
-/// satisfies them; the message names their joints.
+/// Factorises `forward` at x. \throws InconsistentInitialConditions if redundant equations contradict each other, so
+/// that no configuration satisfies them; the message names their joints.
 template <class Solver>
 [[gnu::cold]] void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!all_finite(x.q)) return;
@@ -136,9 +137,10 @@ template <class Solver>
 
 /// Corrects the coordinates until every joint is satisfied to `tolerance` [m], [rad], in at most `max_iterations`
 /// Gauss–Newton iterations with minimal changes in the mass norm. If the extent of an assembly of bodies is below one
-/// metre, violations of lengths are also at most 1e-9 of this extent. Then projects the velocities. \throws
-/// InconsistentInitialConditions naming the joint that cannot be satisfied, or the joints whose redundant equations
-/// contradict each other; InvalidInput for a quaternion whose norm is not one. After an exception x is unchanged.
+/// metre, violations of lengths are also at most max(tolerance, 1e-9) times this extent. Then projects the velocities.
+/// \throws InconsistentInitialConditions naming the joint that cannot be satisfied, or the joints whose redundant
+/// equations contradict each other; InvalidInput for a state of another model, or a quaternion whose norm is not one.
+/// After an exception x is unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
@@ -180,7 +182,7 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
 /// redundant constraints are zero.
 /// \throws InconsistentInitialConditions naming a joint whose violation exceeds `tolerance` [m], [rad] (`assemble`
 /// removes this violation), or the joints with redundant equations that contradict each other; InvalidInput,
-/// SingularMatrix, NonFiniteValue. x is then unchanged.
+/// SingularMatrix, NonFiniteValue. After an exception x is unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void make_consistent(System& system, State& x, double tolerance = 1e-8) {
   require_positive(tolerance, "make_consistent: the tolerance");

@@ -154,13 +154,13 @@ double joint_translation_rate(System const& system, ElementHandle<J> const& join
 ///   for (State const& now : simulate(…)) angle = turns.record(now);
 /// The angle of the first state lies in (−π, π]. From state to state, θ₁ = θ₀ + Δ. Of all increments Δ that agree with
 /// the angles of the two states up to full turns, the one nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀) is taken. The count is
-/// correct if the error of this estimate is below half a turn. This condition is satisfied for each step of a run, and
-/// between any two states if the rate is constant. `record` does not allocate memory. The model must outlive the
-/// counter and must not change after its construction.
+/// correct if the error of this estimate is below half a turn. Steps that resolve the rotation satisfy this condition.
+/// At constant rate, the interval between two states can have any length. `record` does not allocate memory. The model
+/// must outlive the counter and must not change after its construction.
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
-  /// Counter without states for a joint of `model`. \throws InvalidInput like `joint_angle`.
+  /// Counter without states for a joint of `model`. \throws InvalidInput for a handle of another model.
   template <class M, class J>
   TurnCounterOf(M const& model, ElementHandle<J> const& joint)
       : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}
@@ -183,8 +183,8 @@ class TurnCounterOf {
     started_ = false;
     return record(x);
   }
-  /// Adds state x. Returns the angle with its full turns [rad].
-  /// \throws InvalidInput for a state of another model, and for a state earlier than the last one.
+  /// Adds state x. Returns the angle with its full turns [rad]. \throws InvalidInput for a state of another model, for
+  /// a state earlier than the last one, and for a marker without axes.
   double record(State const& x) {
     require_usable(system_, x);
     if (started_ && !(x.t >= t_))

@@ -121,7 +121,7 @@ class Probe {
   SystemSource source_;
   ModelWatch watch_;
   std::optional<System> system_;
-  bool current_ = false, has_forces_ = false;  // true if the system is evaluated; true if its wrenches are
+  bool current_ = false, has_forces_ = false;  // true if the system is evaluated; true if its wrenches are evaluated
   long evaluations_ = 0;
 };
 
@@ -323,7 +323,7 @@ template <class T>
 concept ProbedModel = !std::same_as<T, System>;
 
 /// Energies in state x of a model [J]. To evaluate several quantities in one state, use `Probe`.
-/// \throws InvalidInput for a state or a handle of another model, like all following functions
+/// \throws InvalidInput for a state of another model.
 template <ProbedModel M, std::convertible_to<State const&> X>
 Energy energy(M const& model, X const& x) {
   return detail::answer(model, x, [](ObservedState const& now) { return now.energy(); });

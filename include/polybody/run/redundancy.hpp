@@ -178,8 +178,9 @@ class ConstraintFactor {
 }  // namespace detail
 
 /// Counts the redundant constraint equations of a model at x (coordinates, velocities and time) and names their joints,
-/// with a separate factorisation. A run selects the equations to drop by the same rule (`leave_out_redundant`). A
-/// contradiction in positions is found to first order: call this function at the final state of `assemble`.
+/// with a separate factorisation. A run selects the equations to drop by the same rule, except that it keeps equations
+/// that are redundant only at x (`leave_out_redundant`). A contradiction in positions is found to first order: call
+/// this function at the final state of `assemble`.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
 Redundancy redundancy(System& system, State const& x) {

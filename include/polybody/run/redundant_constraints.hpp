@@ -62,7 +62,7 @@ struct ConstraintDependence {
 /// Residual b + G a (rows) of the smallest motion a that satisfies G a = −b in all rows that were not dropped. In a
 /// dropped row with the null vector c, the residual is c·b. The magnitude |c·b| is an upper bound of |c·b|/max |c|,
 /// since max |c| ≥ 1. One solution thus compares all rows with a limit; only rows beyond the limit require their null
-/// vectors. The last factorisation of `forward` must belong to the position of `system`.
+/// vectors. The last factorisation of `forward` must be at the coordinates of `system`.
 template <class Solver>
 [[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
   VecX a = VecX::Zero(system.velocities()), left = VecX::Zero(system.rows());

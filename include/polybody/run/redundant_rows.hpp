@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Choice of the redundant constraint equations that a run drops. The choice follows from the null space of Gᵀ: an
-/// equation may be dropped if its coefficient in a null vector is large enough relative to the other coefficients. If
-/// the coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
+/// equation may be dropped if its coefficient in a null vector is at least a tenth of the largest coefficient. If the
+/// coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
 /// equations is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput.
 /// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound. The factorisation divides by
 /// the coefficient of the last row, which may pass through zero during a motion.
@@ -269,8 +269,8 @@ class NullVectors {
   ScaledRows<> rows_;
 };
 
-/// True if the present choice of `forward` remains valid: the choice contains all dropped equations, and all
-/// coefficients of their null vectors are bounded.
+/// True if the present choice of `forward` remains valid: the choice contains all dropped equations, and no coefficient
+/// of their null vectors exceeds 30.
 template <class Solver>
 bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<IndexMap<double>> const& null_vectors) {
   if (forward.redundant_rows().size() != forward.left_out().size()) return false;
@@ -283,9 +283,9 @@ bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<IndexMap<dou
 
 /// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a previous choice
 /// that remains valid. Equations that are redundant only at x, a singular configuration, are not chosen. Returns true
-/// if the choice has changed. Nothing is chosen if the linear equations have other unknowns than a step, as with joint
-/// coordinates. \param lambda multipliers of an earlier state, or null: equations whose multiplier is zero were chosen
-/// in that state and are preferred
+/// if the choice has changed. Nothing is chosen if the unknowns of the linear equations differ from those of a step, as
+/// with joint coordinates. \param lambda multipliers of an earlier state, or null: equations whose multiplier is zero
+/// were chosen in that state and are preferred
 template <class Solver>
 [[gnu::cold]] bool leave_out_redundant(System& system, ForwardDynamics<Solver>& forward, State const& x,
                                        VecX const* lambda = nullptr) {

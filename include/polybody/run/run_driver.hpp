@@ -13,13 +13,13 @@ namespace polybody {
 
 /// Step of a run.
 struct RunStep {
-  StepPlan::Next plan{};       ///< planned end of the step
-  StepReport report;           ///< length and cost of the step, up to its planned end
-  Sequence<double> lengths;    ///< lengths of the parts of the step [s]; several parts only before an event
-  bool remainder = false;      ///< true for a short step to the time grid, after a breakpoint or an event
-  bool reached = false;        ///< true if the integrator reached `plan.target`
-  bool met = false;            ///< true if an event ends the step
-  bool acts = false;           ///< true if an event that ends the step changes the state
+  StepPlan::Next plan{};     ///< planned end of the step
+  StepReport report;         ///< length and cost of the step, up to its planned end
+  Sequence<double> lengths;  ///< lengths of the parts of the step [s]; several parts only before an event
+  bool remainder = false;    ///< true for a step below 1 % of the requested length, up to a breakpoint or the end time
+  bool reached = false;      ///< true if the integrator reached `plan.target`
+  bool met = false;          ///< true if an event ends the step
+  bool acts = false;         ///< true if an event that ends the step changes the state
   bool at_breakpoint = false;  ///< true if the step ends at a breakpoint
   bool restarts = false;       ///< true if the integrator must start again at the end of the step
 };
@@ -79,7 +79,8 @@ class RunDriver {
     step_.remainder = step_.plan.h < 0.01 * length;
     return step_;
   }
-  /// Takes the planned step of `run`, which replaces x. After an exception x and the driver are unchanged.
+  /// Takes the planned step of `run` from x, and stores the end of the step in x. After an exception x and the driver
+  /// are unchanged.
   template <class Run>
   void take_step(State& x, Run& run) {
     RunStep& s = step_;
@@ -103,8 +104,8 @@ class RunDriver {
   template <class Run>
   StepReport halving_step(State& x, double h, int halvings, Run& run);
 
-  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues as a
-  /// resumed run.
+  /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues like
+  /// a resumed run.
   [[gnu::cold]] void store(RunSnapshot& to) {
     events_.forget();
     to.step = h_;

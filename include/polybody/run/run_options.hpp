@@ -26,15 +26,15 @@ struct RunProgress {
 struct RunOptions {
   Required<double> end_time;             ///< end time [s]
   Required<double> step;                 ///< step [s]; initial step for an integrator that controls its step
-  std::optional<double> max_step = {};   ///< largest step [s], for an integrator that controls its step
+  std::optional<double> max_step = {};   ///< largest step [s]; also limits `step`
   std::vector<double> breakpoints = {};  ///< breakpoints [s], besides those of driving constraints and loads
   std::vector<Event> events = {};        ///< events that are detected in each step
   /// Limit of |Φ| at the start [m], [rad]. If the extent of an assembly of bodies is below one metre, the limit of
   /// lengths is this value times this extent in metres.
   double assembly_tolerance = 1e-8;
   /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
-  /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs. If 0, a failed
-  /// step ends the run. The report counts halved steps.
+  /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs and in fixed
+  /// steps of `work_precision`. If 0, a failed step ends the run. The report counts halved steps.
   std::optional<int> max_step_halvings = {};
   bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state; costs one factorisation per step
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
@@ -120,9 +120,9 @@ struct RunReport : RunCounts {
   /// the load over the reactions is not.
   std::vector<std::string> redundant = {};
   /// Warnings as text. At the start: a singular configuration whose velocities do not determine a branch of the motion,
-  /// and a step beyond the stability limit of an explicit integrator. In a step: a singular configuration at which the
-  /// velocities jumped to another branch, and axial forces near buckling that a beam neglects. At the end: energy that
-  /// no work explains.
+  /// and a step beyond the stability limit of an explicit integrator for the compliant joints. In a step: a singular
+  /// configuration at which the velocities jumped, and axial forces of at least 5 % of the buckling load that a beam
+  /// neglects. At the end: energy that no work explains.
   std::vector<std::string> warnings = {};
 
   /// Adds the warning `sentence` if it is not empty.
@@ -151,6 +151,7 @@ struct RunReport : RunCounts {
   /// resolve the work of a force, or if steps were halved for their energy gain.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
+    char const* const were_halved = run.halved == 1 ? " step was halved" : " steps were halved";
     if (found.worst > 0.4 * found.scale)
       add_warning(sentence_of({"The work of a force over one step is uncertain by ", found.worst,
                                " J, more than 40 % of the exchanged energy (", found.scale,
@@ -160,16 +161,16 @@ struct RunReport : RunCounts {
           sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
                        std::abs(found.energy) / found.scale, " of the exchanged energy (", found.scale, " J); ",
-                       run.halved, " steps were halved. Repeat the run with half the step and compare."}));
+                       run.halved, were_halved, ". Repeat the run with half the step and compare."}));
     else if (found.peak > 2.0 * limit * found.scale)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion gains up to ", found.peak,
                                " J that no work explains, ", found.peak / found.scale, " of the exchanged energy (",
-                               found.scale, " J), and loses energy later; ", run.halved,
-                               " steps were halved. Repeat the run with half the step and compare."}));
+                               found.scale, " J), and loses energy later; ", run.halved, were_halved,
+                               ". Repeat the run with half the step and compare."}));
     else if (found.halved > 0)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
-                               " steps gained energy that no work explains; ", run.halved,
-                               " steps were halved. Repeat the run with half the step and compare."}));
+                               found.halved == 1 ? " step" : " steps", " gained energy that no work explains; ",
+                               run.halved, were_halved, ". Repeat the run with half the step and compare."}));
   }
 };
 

@@ -8,8 +8,8 @@
 
 namespace polybody {
 
-/// Selects the first state at or after each multiple of an interval, counted from the start. If the interval is zero,
-/// every state is selected.
+/// Selects the first state at or after each positive multiple of an interval, counted from the start. The initial state
+/// is not selected. If the interval is zero, every state is selected.
 class RunSampling {
  public:
   /// \param start initial time [s] \param interval sampling interval [s]

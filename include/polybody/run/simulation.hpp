@@ -70,7 +70,7 @@ class Simulation {
   [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }             ///< state at the end of the last step
-  ObservedState const& now() const { return now_; }      ///< this state with its evaluation
+  ObservedState const& now() const { return now_; }      ///< state at the end of the last step, with its evaluation
   RunReport const& report() const& { return report_; }   ///< report so far
   RunReport report() && { return std::move(report_); }   ///< the report so far, moved out
   System& system() { return *system_; }                  ///< integrated system: the model, or its reduced system

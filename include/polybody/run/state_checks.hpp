@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Checks that a state belongs to a model.
+/// Checks that a state has the sizes of a model, finite values, and quaternions of norm one.
 
 #include <polybody/system/state.hpp>
 #include <polybody/system/system.hpp>

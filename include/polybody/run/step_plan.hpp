@@ -31,11 +31,11 @@ class StepPlan {
   /// Next step of a run.
   struct Next {
     double target, h;   ///< latest end of the step [s]; length of the step [s]
-    bool lands, jumps;  ///< in order: true if the step ends at `target`; true if `target` is a breakpoint
+    bool lands, jumps;  ///< in order: true if the step ends at `target`; true if it ends at a breakpoint
   };
 
   StepPlan() = default;
-  /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside this interval are ignored.
+  /// Run from `start` to `end_time` with steps of about `step` [s]. Breakpoints outside (start, end_time] are ignored.
   [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
       : end_time_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
     erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
@@ -62,7 +62,7 @@ class StepPlan {
     // equations that are divided by the square of a tiny step.
     bool const lands = 1.01 * h >= left;
     if (lands && breakpoint) return {target, step_to_just_before(target, t), true, true};
-    // A last step that differs from h by round-off only has the length h, as in a run with a later end time.
+    // If a last step differs from h only by round-off, its length is h, as in a run with a later end time.
     return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Copies of the data of a run, except those of its driver, that a failed step must restore.
+/// Copies of the data of a run that a failed step must restore. The driver of the run restores its own data.
 
 #include <array>
 #include <optional>
@@ -54,7 +54,7 @@ struct StepUndo {
     redundant_ = report.redundant;
     restarted_ = true;
   }
-  /// Stores the warnings before an evaluation of axial forces.
+  /// Stores the monitor and the warnings before an evaluation of axial forces.
   [[gnu::cold]] void keep_axial(AxialForceMonitor const& axial, RunReport const& report) {
     if (axial_) return;
     said_.assign(report.warnings.begin(), report.warnings.begin() + std::ptrdiff_t(warnings_));

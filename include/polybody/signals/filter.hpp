@@ -55,9 +55,9 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 /// Resamples `values` at t₀, t₀ + step, … by linear interpolation, with the first of the `times` t₀. Frequencies above
 /// half of the new sampling rate alias; histories with such frequencies require a smaller step.
 /// \param step time step of the result [s] \param largest_gap largest interval between given samples that is
-/// interpolated [s]; 0: 1.5 steps
-/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, for larger gaps, for a
-/// step that is not positive, and for more than 10⁹ samples.
+/// interpolated [s]; 0: 1.5 times `step`
+/// \throws InvalidInput for fewer than two samples, for samples that are not finite, for times that do not increase,
+/// for larger gaps, for a step that is not positive, for a negative `largest_gap`, and for more than 10⁹ samples.
 template <class = void>
 std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
                               double largest_gap = 0.0) {
@@ -108,11 +108,12 @@ struct LowPass {
   }
 };
 
-/// Returns the history `values` without frequencies above the cut-off. The computing time increases with the largest
+/// Applies the low-pass filter `filter` to the history `values`. The computing time increases with the largest
 /// prime factor of the number of samples. Long records should have a number of samples with small prime factors.
 /// \param times equally spaced [s]
-/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above the Nyquist
-/// frequency, and for a cut-off whose period is longer than the record.
+/// \throws InvalidInput for fewer than four samples, for samples that are not finite or not equally spaced, for a
+/// cut-off of zero or less, above the Nyquist frequency, or with a period longer than the record, and for a negative
+/// roll-off.
 template <class = void>
 std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {
   detail::require_history(times, values, 4, "low_pass");
@@ -168,8 +169,8 @@ struct Spectrum {
 
 /// Amplitude spectrum of equally spaced samples `values` at `times` [s]. a₀ is |mean|. The other amplitudes are those
 /// of the values x_i without the mean, weighted with a window w: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without
-/// the factor 2 at the Nyquist frequency). \throws InvalidInput for samples that are too few, not finite or not equally
-/// spaced.
+/// the factor 2 at the Nyquist frequency). \throws InvalidInput for fewer than four samples, and for samples that are
+/// not finite or not equally spaced.
 template <SpectralWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

@@ -14,7 +14,7 @@
 namespace polybody {
 
 /// Turning points of a history: peaks, valleys, and the first and the last sample. Of consecutive equal samples the
-/// first is used. \throws InvalidInput for a NaN.
+/// first is used. \throws InvalidInput for a sample that is not finite.
 template <class = void>
 std::vector<double> turning_points(std::span<double const> history) {
   std::vector<double> points;
@@ -48,7 +48,7 @@ struct StressCycle {
 /// - if Y begins the history, Y counts as half a cycle, and its first point is removed from the history.
 ///
 /// Every range that remains at the end counts as half a cycle [ASTM E1049-85, §5.4.4].
-/// \throws InvalidInput for a NaN.
+/// \throws InvalidInput for a sample that is not finite.
 template <class = void>
 std::vector<StressCycle> rainflow(std::span<double const> history) {
   std::vector<StressCycle> cycles;
@@ -75,7 +75,7 @@ std::vector<StressCycle> rainflow(std::span<double const> history) {
 }
 
 /// Histogram of the ranges of cycles: entry k counts the cycles with ranges in [k·width, (k + 1)·width).
-/// \throws InvalidInput unless the width is positive, and if a range has more than 10⁷ widths.
+/// \throws InvalidInput unless the width is positive, and if a range has 10⁷ widths or more.
 template <class = void>
 std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   require_positive(width, "binned: the width");

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Points of a study on grids and from lists.
+/// Points of a study on grids and from lists, and the elementary functions that compute them.
 
 #include <charconv>
 #include <cmath>
@@ -79,7 +79,8 @@ double normal_quantile(double u) {
   return x;
 }
 
-/// Number with twelve digits closest to x: 10⁷ and 0.3 instead of 9999999.999999998 and 0.30000000000000004.
+/// Number with twelve significant digits closest to x: 10⁷ and 0.3 instead of 9999999.999999998 and
+/// 0.30000000000000004.
 template <class = void>
 double of_twelve_digits(double x) {
   char digits[40];
@@ -92,7 +93,8 @@ double of_twelve_digits(double x) {
 
 namespace polybody {
 
-/// Equidistant values: `count` values from `first` to `last`. The intermediate values are rounded to twelve digits.
+/// Equidistant values: `count` values from `first` to `last`. The intermediate values are rounded to twelve significant
+/// digits.
 /// \throws InvalidInput for fewer than two values, or if `first` or `last` is not finite.
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {

@@ -44,7 +44,7 @@ struct StudyResults {
   Points points;                                   ///< points of the study
   std::vector<StudyOutput> outputs;                ///< outputs of the study
   std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes in the order of the points; none if unfinished
-  std::size_t resumed = 0;                         ///< number of points that earlier runs have finished
+  std::size_t resumed = 0;                         ///< number of points with an outcome of an earlier run
   bool torn = false;                               ///< true if an earlier run was killed while it wrote a line
 
   /// Number of points that have an outcome, including failures.

@@ -40,8 +40,9 @@ class Points {
   /// Table with these `columns` and `values`.
   /// \param values (points × columns), row by row
   /// \param origin description of the rule that generated the points
-  /// \throws InvalidInput for no point or no column, for names that are empty, equal or not printable, and for values
-  /// that are not finite or outside of the choices.
+  /// \throws InvalidInput for no point or no column, for a number of values that does not fill the rows, for names that
+  /// are empty, equal or not printable, for units or choices that are not printable, and for values that are not finite
+  /// or outside of the choices.
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
     if (columns_.empty())

@@ -132,7 +132,7 @@ class StudyRecord {
 
   /// Appends the outcome of a point.
   /// \throws IoError if the line cannot be written, for example if the disk is full. The record then ends with the
-  /// previous line.
+  /// previous line. IoError is also thrown if the line is written, but cannot be synchronised to the disk.
   void append(std::size_t point, Outcome const& outcome) {
     RecordChain const before = content_.chain;
     try {
@@ -260,7 +260,7 @@ class StudyQueue {
     if (options.progress && !left_.empty()) progress_.emplace(0.0, double(left_.size()), label);
   }
 
-  std::size_t left() const { return left_.size(); }  ///< number of unfinished points at the start
+  std::size_t left() const { return left_.size(); }  ///< number of points that this run must compute
 
   /// Returns the next point, or nothing if all are distributed or the study is stopped.
   std::optional<std::size_t> next() {

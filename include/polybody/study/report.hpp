@@ -77,7 +77,7 @@ StudyResults where(StudyResults found, Keeps const& keeps) {
 }
 
 /// Curves of y over x for a Figure; x and y are parameters or outputs. There is one curve for each combination of
-/// values of the parameters `by`, with its points in the order of the table. Failed points are omitted.
+/// values of the parameters `by`, with its points in the order of the table. Failed and unfinished points are omitted.
 /// \throws InvalidInput for a column that does not exist, and for a name in `by` that is not the name of a parameter.
 template <class = void>
 std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std::string_view y,

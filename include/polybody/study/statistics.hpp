@@ -36,7 +36,7 @@ Statistics statistics(StudyResults const& found, std::string_view column) {
   if (s.count < 2)
     throw InvalidInput("statistics.too_few",
                        {"study: statistics of \"", ErrorObject{column},
-                        "\" need at least two finished points, but there are ", ErrorValue{s.count}, "."});
+                        "\" need at least two points without failure, but there are ", ErrorValue{s.count}, "."});
   for (double const x : s.sorted) s.mean += x / double(s.count);
   double squares = 0.0;
   for (double const x : s.sorted) squares += (x - s.mean) * (x - s.mean);
@@ -70,8 +70,9 @@ template <class = void>
 double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {
   std::vector<double> const a = detail::ranks_of(found.column(one)), b = detail::ranks_of(found.column(other));
   if (a.size() < 2)
-    throw InvalidInput("statistics.too_few", {"study: a correlation needs at least two finished points, but has ",
-                                              ErrorValue{a.size()}, "."});
+    throw InvalidInput(
+        "statistics.too_few",
+        {"study: a correlation needs at least two points without failure, but has ", ErrorValue{a.size()}, "."});
   double const mean = 0.5 * double(a.size() + 1);
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {

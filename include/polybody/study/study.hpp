@@ -24,8 +24,8 @@ struct StudyFile {
 
 namespace detail {
 
-/// Outcome of f at a point. f returns the outputs as a number or a range of numbers. Errors of the library are failures
-/// of the point; other exceptions are passed on.
+/// Outcome of f at a point. f returns the outputs as a number or a range of numbers. Errors of the library, except
+/// StudyUsageError, are failures of the point; other exceptions are passed on.
 template <class F>
 Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs) {
   try {
@@ -103,9 +103,10 @@ class Study {
   }
 
   /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The results
-  /// of f, a number or a range of numbers, are the outputs. The point is recorded as failed if f throws an Error, an
-  /// output is not finite, or the time limit of the options is exceeded. The record then contains the message. After an
-  /// exception the points that were finished before remain recorded.
+  /// of f, a number or a range of numbers, are the outputs. The point is recorded as failed if f throws an Error
+  /// (except StudyUsageError), or if an output is not finite. With a time limit, the point also fails if it exceeds the
+  /// limit or if its process crashes. The record contains the message. After an exception, the points that were
+  /// finished before remain recorded.
   /// \throws IoError for a file that cannot be created or written, is open in another run, is damaged, or belongs to
   /// another study.
   /// \throws InvalidInput for fewer than one thread, and for a time limit that is negative or not finite.

@@ -7,9 +7,9 @@
 namespace polybody {
 
 /// Selects contact pairs of force groups. Only the selected pairs have blocks in a matrix that is evaluated repeatedly.
-/// A pair is selected if it was in contact in a recent evaluation. It is also selected if a neighbouring marker was in
-/// contact with the same partner. Neighbours are included because, for example, links of a track come into contact one
-/// after another.
+/// A pair is selected if it was in contact in one of the last 50 evaluations. It is also selected if a marker at most
+/// two places before or after its marker was in contact with the same partner. Neighbours are included because, for
+/// example, links of a track come into contact one after another.
 class ActiveContactPairs {
  public:
   /// Pairs of one force group. Marker i of the group's many markers and contact partner j form pair i · few + j.

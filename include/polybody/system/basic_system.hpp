@@ -29,7 +29,8 @@ void for_each_row_block(Data<T> const& data, F&& f) {
     if (block.row >= 0 && !data.leaves_out(block)) f(block);
 }
 
-/// r += mapᵀ λ of both ends of a block. \tparam m number of constraint equations; 0 stands for block.rows
+/// r += Jᵀ mapᵀ λ of both ends of a block, with the Jacobian J of the end's marker. J is omitted for an end without a
+/// marker. \tparam m number of constraint equations; 0 stands for block.rows
 template <int m, StateScalar T>
 void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   if constexpr (m > 0)
@@ -237,7 +238,7 @@ class BasicSystem {
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// Sets the number of threads that share the loops over elements, markers and joints, including the calling thread.
-  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one thread.
+  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one thread or more than 4096.
   void use_threads(int threads);
 
   /// r = M a − f + Gᵀλ (nv).

@@ -34,9 +34,9 @@ concept CarriableBody =
     !JointCoordinatePolicy<P> || HasRigidLayout<B> ||
     (FloatingFrameBody<B> && !std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>);
 
-/// If policy P eliminates coordinates, it can eliminate those of body B. `JointCoordinates` requires a body with a
-/// frame, and `AncfLinear` requires points that are linear in the coordinates. The ground is always supported, because
-/// it has no coordinates.
+/// If policy P eliminates coordinates, it can eliminate those of body B. `JointCoordinates` requires a rigid body or a
+/// floating frame, and `AncfLinear` requires points that are linear in the coordinates. The ground is always supported,
+/// because it has no coordinates.
 template <class P, class B>
 concept EliminableBody = std::is_same_v<B, Ground> || (CarriableBody<P, B> && (!LinearPolicy<P> || HasLinearPoints<B>));
 

@@ -30,13 +30,13 @@ template <class G>
 concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
 
 /// Pins (joints with one free rotation) and driving constraints between rigid bodies. A driving constraint and a pin
-/// between the same bodies contradict each other if their axes differ.
+/// between the same bodies contradict each other if their axes are not parallel.
 class DriveAxes {
  public:
   /// Adds a driving constraint if `drives` is true, otherwise a pin. \param bodies indices of the first velocities of
   /// both bodies; −1 for the ground \param axis (3) unit vector in world axes of the reference state \param name name
-  /// of the joint \throws InvalidInput if a driving constraint and a pin between the same bodies have different axes;
-  /// the message names both joints.
+  /// of the joint \throws InvalidInput if the axes of a driving constraint and a pin between the same bodies are not
+  /// parallel; the message names both joints.
   template <class = void>  // a template, to be compiled only if it is used
   [[gnu::cold]] void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
     if (bodies.first > bodies.second) std::swap(bodies.first, bodies.second);
@@ -258,8 +258,8 @@ template <class J, class A, class B>
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// Adds a force element on the markers. \throws InvalidInput for invalid parameters or markers; the message names the
-/// force.
+/// Adds a force element on the markers. \throws InvalidInput for a duplicate name and for invalid parameters or
+/// markers; the message names the force.
 template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
@@ -275,8 +275,8 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// Adds a force group with its many markers. \throws InvalidInput for invalid parameters or markers; the message names
-/// the group.
+/// Adds a force group with its many markers. \throws InvalidInput for a duplicate name and for invalid parameters or
+/// markers; the message names the group.
 template <class F, class B>
 ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& group,
                            Sequence<PooledMarker<B>> const& many, std::string name) {

@@ -19,9 +19,9 @@ namespace polybody {
 /// One end of a constraint block: a marker whose twist the equations contain, or velocities that they contain directly.
 template <StateScalar T = double>
 struct ConstraintSide {
-  Index marker = -1;       ///< number of the marker; −1 if the map multiplies velocities
-  Index first = 0;         ///< without a marker: index of the first velocity of this end
-  Index columns = 0;       ///< columns of the map: six for a marker, zero for an end that is fixed to the ground
+  Index marker = -1;  ///< number of the marker; −1 if the map multiplies velocities
+  Index first = 0;    ///< without a marker: index of the first velocity of this end
+  Index columns = 0;  ///< columns of the map: six for a marker, otherwise the number of velocities, which may be zero
   T const* map = nullptr;  ///< (rows × columns) derivative of ġ with respect to twist or velocities, column-major
 };
 

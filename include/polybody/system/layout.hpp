@@ -228,8 +228,8 @@ struct ModelLayout {
       if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return sentence_of({"force \"", f.name, "\""});
     return "unknown";
   }
-  /// Index in `joints` of the joint of each constraint equation; −1 for an equation of a body. Use it for many names,
-  /// because the cost of `name_of` grows with the number of bodies, joints and forces.
+  /// Index in `joints` of the joint of each constraint equation; −1 for an equation of a body. Use this function for
+  /// many names, because the cost of `name_of` grows with the number of bodies, joints and forces.
   [[gnu::cold]] Sequence<Index> joint_of_rows() const {
     Sequence<Index> of(std::size_t(rows), -1);
     for (std::size_t k = 0; k < joints.size(); ++k)

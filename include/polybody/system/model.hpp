@@ -70,8 +70,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }
 
   /// Joins marker a to marker b. The axes in the joint's geometry refer to world axes in the reference configuration.
-  /// \throws InvalidInput naming the joint for a marker of another model, for two markers on one rigid body or on the
-  /// ground, and for invalid parameters.
+  /// \throws InvalidInput naming the joint for a duplicate name, for a marker of another model, for two markers on one
+  /// rigid body or on the ground, and for invalid parameters.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     detail::require_pairing<J, A, B>();
@@ -93,21 +93,22 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return ElementHandle<J>{};
   }
 
-  /// Applies a force element to one marker. \throws InvalidInput for a marker of another model or invalid parameters.
+  /// Applies a force element to one marker. \throws InvalidInput for a duplicate name, a marker of another model or
+  /// invalid parameters.
   template <OneOf<Fs...> F, class A>
     requires(F::markers == 1)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, std::string name = "") {
     return apply(force, std::tuple(a), std::move(name));
   }
-  /// Applies a force element between two markers. Its first wrench acts on marker a. \throws InvalidInput for a marker
-  /// of another model or invalid parameters.
+  /// Applies a force element between two markers. Its first wrench acts on marker a. \throws InvalidInput for a
+  /// duplicate name, a marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class A, class B>
     requires(F::markers == 2)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     return apply(force, std::tuple(a, b), std::move(name));
   }
-  /// Applies a force element to the markers of a tuple. \throws InvalidInput for a marker of another model or invalid
-  /// parameters.
+  /// Applies a force element to the markers of a tuple. \throws InvalidInput for a duplicate name, a marker of another
+  /// model or invalid parameters.
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
@@ -117,8 +118,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         markers);
   }
 
-  /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a marker
-  /// of another model or invalid parameters.
+  /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a
+  /// duplicate name, a marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -134,7 +135,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element unless the `others` contain exactly its one or two markers, or a tuple of its markers.
+  /// Refuses a force element unless the second argument and `others` contain exactly its one or two markers, or a tuple
+  /// of its markers.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))

@@ -4,6 +4,7 @@
 /// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations. It
 /// therefore also converges in the steps of a diverging motion.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,7 +19,7 @@ namespace polybody {
 /// Limits of a run. An infinite limit disables its check.
 struct PlausibilityLimits {
   double violation = 0.1;  ///< limit of |Φ| per constraint equation, relative to max(1, extent of the markers in m) [1]
-  double energy = 1.0;     ///< limit of the unexplained energy of a step, relative to S (`PlausibilityCheck`) [1]
+  double energy = 1.0;     ///< limit of the unexplained gain since a start, relative to S (`PlausibilityCheck`) [1]
   double warning = 0.05;   ///< unexplained energy that causes a warning, relative to `Unexplained::scale` [1]
 };
 
@@ -35,18 +36,18 @@ struct Unexplained {
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
 ///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W,   limit = `PlausibilityLimits::energy`.
-/// V₀⁺ is the energy stored at the start, without gravity. W is the work input of forces without a potential, of drives
-/// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find only half
-/// of the work of a force that starts within a step. The balance is evaluated each time Σ v² (all velocities) has grown
-/// by a tenth. Only a gain is refused, so dissipation is not counted. At the end of a run and before each restart,
-/// `settle` evaluates the balance, with signed work unless a counted element can store energy. It counts losses if no
-/// part of the model dissipates energy. Models with a potential that depends on time have no energy balance.
+/// The limit is ten times as large in the first four steps after a start. V₀⁺ is the energy stored at the start,
+/// without gravity. W is the work input of drives, and of forces and compliant joints without a potential
+/// (`WorkAccount`). S contains 2 W because the quadratures find only half of the work of a force that starts within a
+/// step. The balance is evaluated each time Σ v² (all velocities) has grown by a tenth. Only a gain is refused, so
+/// dissipation is not counted. At the end of a run and before each restart, `settle` evaluates the balance, with signed
+/// work unless a counted element can store energy. `settle` counts losses if no part of the model dissipates energy.
+/// Models with a potential that depends on time have no energy balance.
 ///
 /// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of the largest
-/// Σ v². It halves a step that gains more than ½ limit · S. It also halves a step that gains a tenth of this and ends
-/// with E − E₀ minus signed work above ½ limit · S. Smaller gains are often part of a reversible oscillation, whose
-/// energy a new start would remove. With limit = 1 the tenth is 0.05 S, a jump by 3 % of the largest T or more. The
-/// unit of Σ v² is mixed, so a jump of slow, heavy bodies can be missed; the other balances find it.
+/// Σ v². It halves a step that gains more than ½ limit · S, or more than a tenth of this value if E − E₀ minus signed
+/// work then exceeds ½ limit · S. Smaller gains are often part of a reversible oscillation, whose energy a new start
+/// would remove. The unit of Σ v² is mixed, so a jump of slow, heavy bodies can be missed; the other balances find it.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -153,7 +154,7 @@ class PlausibilityCheck {
       if (std::abs(v[i]) > std::abs(v[fastest])) fastest = i;
     return fastest;
   }
-  /// False for a motion that is slow relative to its coordinates. Its energy gain is round-off and not an instability.
+  /// False for a slow motion, max |v| h < 10⁻³ (1 + max |q|). Its energy gain is round-off and not an instability.
   static bool moves(StepResult const& end) {
     return std::abs(end.v[fastest_of(end.v)]) * end.h >= 1e-3 * (1.0 + largest_size(end.q));
   }
@@ -175,8 +176,8 @@ class PlausibilityCheck {
     double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
     return few * account_.energy * account_.scale;
   }
-  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error [J]:
-  /// given up to the last balance, returned up to this step \throws NewtonConvergenceFailure if a halving is possible
+  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error [J]: on entry
+  /// at the last balance, on return at this step \throws NewtonConvergenceFailure if a halving is possible
   template <class = void>
   void require_small_gain(System& system, StepResult const& end, double& gained, double& doubt);
   template <class = void>
@@ -251,10 +252,8 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   if (account_.energy < never) work_.begin(system, place);
   laws_.begin(layout, place.t, 1e-6 * place.h);
   lossless_ = work_.complete();
-  for (BodyLayout const& body : layout.bodies) {
-    lossless_ = lossless_ && body.lossless;
-    if (body.changes) account_.energy *= 100.0;  // the body's energy changes without work
-  }
+  for (BodyLayout const& body : layout.bodies) lossless_ = lossless_ && body.lossless;
+  if (std::ranges::any_of(layout.bodies, &BodyLayout::changes)) account_.energy *= 100.0;  // changes without work
   for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
   for (std::size_t i = 0; i < layout.forces.size(); ++i) {
     ForceLayout const& force = layout.forces[i];

@@ -121,8 +121,8 @@ void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n
 /// Adds the effect of a marker's pose on its twist, at constant velocities of its body, to `of_pose`. On a rigid body,
 /// v = ṙ₀ + ω × ρ, with the arm ρ from the body's origin to the marker. A small rotation e changes ω by e × ω, and v by
 ///   (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ)   (Jacobi's identity).
-/// The effect is omitted for markers of other bodies. \param of_twist, of_pose derivatives with respect to twist and
-/// pose (rows × 6), by columns
+/// The effect is omitted unless p.shape is `JacobianShape::rigid`. \param of_twist, of_pose derivatives with respect to
+/// twist and pose (rows × 6), by columns
 template <int rows>
 void add_rates_of_pose(MarkerKinematics<double> const& p, double const* of_twist, double* of_pose) {
   if (p.shape != JacobianShape::rigid) return;

@@ -6,8 +6,8 @@
 
 namespace polybody {
 
-/// Reference to a model. Its type lists only some of the model's types. A function that builds a hull or a suspension
-/// is then compiled once for all models with these types:
+/// Reference to a model. The type of a subassembly lists only some of the model's types. A function that builds a hull
+/// or a suspension is then compiled once for all models with these types:
 ///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>, Forces<SpringDamper>> hull(model);
 ///   auto const wheel = hull.add(body, "wheel");
 ///   hull.connect(Joint{Revolute{.axis = axis}}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");

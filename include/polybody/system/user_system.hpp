@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// System from equations of a user, without bodies and joints, for every integrator and solver of the library.
+/// System from equations of a user, without bodies and joints, for the integrators and solvers of the library.
+/// `EnergyMomentum` and `EnergyDecaying` do not support such a system.
 ///   struct Oscillator {
 ///     Index velocities() const { return 1; }
 ///     void mass(VecX const& q, MatX& m) const { m(0, 0) = 2.0; }
@@ -44,7 +45,7 @@ concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, Ve
 template <class E>
 concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserFirstOrderEquations<E>;
 /// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps, with given ck, cd. Central differences
-/// are used without this tangent, and for equations with first-order states.
+/// replace a missing tangent, and the tangent of equations with first-order states.
 template <class E>
 concept HasForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
 /// Equations with constraint equations Φ(q, t) = 0, with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
@@ -154,8 +155,8 @@ struct UserOperations final : ModelOperations<double> {
     k += c.mass * m;
     sink.add(0, 0, k);
   }
-  /// k −= factor ∂(f, h)/∂x for the `count` entries from `first` on of x, which is q or v. Uses central differences
-  /// with the step 1e-6 (1 + |x|).
+  /// k −= factor ∂(f, h)/∂x for `count` entries of x from entry `first` on; x is q or v. Uses central differences with
+  /// the step 1e-6 (1 + |xⱼ|) for entry j.
   void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
     if (factor == 0.0) return;
     x_near = x;

@@ -154,7 +154,7 @@ struct ContactLaws {
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
       EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // a `may_touch` that is always true fails here
     }
-  }  ///< `may_touch` and `reach` include all contacts; `may_touch` excludes shapes that are clearly apart
+  }  ///< `may_touch` and `reach` include all contacts; `may_touch` excludes shapes with a gap of 1 m
 
   // --- contact ------------------------------------------------------------------------------------------------
 

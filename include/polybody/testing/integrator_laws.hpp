@@ -62,15 +62,15 @@ struct IntegratorLaws {
     return runs;
   }
 
-  /// ‖x_h − x_{h/2}‖ decreases by the factor 2^order if h is halved, for each of q, v, v̇ and λ.
+  /// ‖x_h − x_{h/2}‖ decreases at least by the factor 2^(order − `slack`) if h is halved, for each of q, v, v̇ and λ.
   void state_converges_at_the_declared_order();
-  /// max |E(t) − E(0)| decreases by the factor 2^order if h is halved.
+  /// max |E(t) − E(0)| decreases at least by the factor 2^(order − `slack`) if h is halved.
   void energy_error_falls_at_the_declared_order();
   /// |Φ| < 1e-10, |Φ̇| < 1e-10 and |Φ̈| < 1e-8 at the end of a run, with the exceptions of the class comment.
   void rows_hold_at_the_end();
   /// `start` does not change q and v. A step advances t by h, reports h, and suggests h for the next step.
   void step_reports_what_it_took();
-  /// Two runs are bitwise identical.
+  /// The final q, v and λ of two runs are bitwise identical.
   void runs_repeat_to_the_last_bit();
   /// If the squares of the initial velocities overflow, a step throws and does not change the state. The workspace
   /// remains usable.

@@ -10,7 +10,7 @@ namespace polybody {
 /// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
 /// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At a border point the
 /// slope equals the slope of the chord to the only neighbour. So heights z = a + bx + cy + dxy are reproduced exactly
-/// within the grid, and parabolas are reproduced away from the border. Beyond the border, the slope normal to the
+/// within the grid, and parabolas in the cells that do not touch the border. Beyond the border, the slope normal to the
 /// border decreases to zero linearly over one spacing and is zero farther out. Four numbers are stored for each height;
 /// copies share them.
 class HeightField {
@@ -23,7 +23,7 @@ class HeightField {
   };
 
   /// \throws InvalidInput naming `what` if there are fewer than two points along x or y, if a spacing is not positive,
-  /// or if a height, slope or curvature is not finite.
+  /// if x0, y0 or a height is not finite, or if a slope or curvature exceeds `largest_number`.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
     require_finite(Vec2(grid.x0, grid.y0), what, ": the position x0, y0 of the first point");

@@ -32,7 +32,7 @@ struct LinkRollerContact {
   Required<double> half_width;       ///< half width of the face [m]
   Required<double> radius;           ///< R, radius of the rims [m]
   double handover = 0.03;            ///< ε, half length of the transition between two links [m]
-  double chamfer = 0.005;            ///< c, chamfer of the edges; must exceed the penetration of the rims [m]
+  double chamfer = 0.005;            ///< c, chamfer of the edges [m]; should exceed the penetrations of the rims
   std::vector<double> rims = {0.0};  ///< positions of the rims' middle planes along the axle [m]
 
   void check(std::string const& name) const {

@@ -95,8 +95,8 @@ struct Bump {
 /// Bumps on the plane z = 0. The heights of overlapping bumps are added.
 class BumpCourse {
  public:
-  /// \throws InvalidInput naming `what` and the bump if a length or a width is not positive, or if another number is
-  /// not finite.
+  /// \throws InvalidInput naming `what` and the bump, counted from 1, if a length or a width is not positive, or if
+  /// another number is not finite.
   explicit BumpCourse(std::vector<Bump> bumps, std::string const& what = "BumpCourse") : bumps_(std::move(bumps)) {
     for (std::size_t i = 0; i < bumps_.size(); ++i) {
       Bump const& b = bumps_[i];

@@ -159,10 +159,11 @@ inline void check_wrapped(TrackPath const& path) {
   }
   TrackClearances const gaps = clearances(path);
   if (gaps.circles < -1e-9 * layout.pitch)
-    throw InvalidInput("track.overlap", {"Track: link ", gaps.link, " lies ", ErrorValue{-gaps.circles}, " m inside ",
-                                         ErrorObject{track_name(layout.circles[gaps.circle])},
-                                         ". List a wheel once for each contact with the track, with its side, and "
-                                         "leave room for the links between neighbouring wheels."});
+    throw InvalidInput("track.overlap",
+                       {"Track: link ", gaps.link, ", counted from 0, lies ", ErrorValue{-gaps.circles}, " m inside ",
+                        ErrorObject{track_name(layout.circles[gaps.circle])},
+                        ". List a wheel once for each contact with the track, with its side, and "
+                        "leave room for the links between neighbouring wheels."});
 }
 
 /// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of at most p/16 and
@@ -226,9 +227,9 @@ inline Vec2 track_pull(TrackPath const& path) {
 
 }  // namespace detail
 
-/// Computes the path of a track around its circles. \throws InvalidInput, naming the circle, if circles overlap, if
-/// their order is impossible for a track, if the pitch is too long for a wheel, or if the tensioner's travel is too
-/// small for the number of links.
+/// Computes the path of a track around its circles. \throws InvalidInput if a number of the layout is outside of its
+/// range, and, naming the circle, if circles overlap, if their order is impossible for a track, if the pitch is too
+/// long for a wheel, or if no travel of the tensioner closes the loop.
 inline TrackPath wrap_track(TrackLayout const& layout) {
   detail::check_track(layout);
   double const travel = detail::track_travel(layout);

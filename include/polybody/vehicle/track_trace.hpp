@@ -50,8 +50,8 @@ struct TrackSprocket {
 struct TrackTensioner {
   std::string circle;      ///< name of the circle that moves
   Vec2 direction;          ///< (2) direction of motion, a vector of any positive length [1]
-  Required<double> least;  ///< lower limit of the travel from the listed position [m]
-  Required<double> most;   ///< upper limit of the travel from the listed position [m]
+  Required<double> least;  ///< lower limit of the travel from the position in `TrackLayout::circles` [m]
+  Required<double> most;   ///< upper limit of the travel from the position in `TrackLayout::circles` [m]
 };
 
 /// Data that determine the path of a track.

@@ -204,5 +204,20 @@ TEST(SpatialLrvf, RefusesWhatItCannotMean) {
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, still); }), "has a chord of 0 m"));
 }
 
+// With Ω in section axes as velocities, the mass matrix is constant: nodes have ½ Ωᵀ J Ω. With the rates of a rotation
+// vector ψ it is Tᵀ J T, Ω = T ψ̇, which depends on ψ [thesis §2.4.2]: at |ψ| = 2 rad, the entry of a rotation across ψ
+// is smaller by the factor (sin 1)².
+TEST(SpatialLrvf, MassIsConstantWithAngularVelocities) {
+  Lrvf<> const beam = straight();
+  Lrvf<>::ElementMatrix at_rest, moved;
+  VecX const bent =
+      carried({.origin = {1, 2, 3}, .axes = exp_so3<double>(Vec3(1, -2, 0.5))}, stepped(Vec3(0.3, 0.7, -1)));
+  beam.mass(1, numbers(stepped(Vec3::Zero())), at_rest);
+  beam.mass(1, numbers(bent), moved);
+  EXPECT_EQ(at_rest, moved);
+  Mat3 const t = right_jacobian<double>(Vec3(2, 0, 0));
+  EXPECT_NEAR((t.transpose() * t)(1, 1), std::pow(std::sin(1.0), 2), 1e-14);
+}
+
 }  // namespace lrvf_test
 }  // namespace polybody

@@ -160,7 +160,7 @@ TEST(WithSliders, SaysThatAPointHasGoneOffTheEnd) {
   EXPECT_NO_THROW(bent.at(bent.q, jacobian));
   bent.q[bent.n - 1] = 1.5 + 0.51;
   EXPECT_TRUE(has(message_of<SliderOutOfRange>([&] { bent.at(bent.q, jacobian); }),
-                  "a slider is beyond the end of the body: s = 2.01"));
+                  "a slider is more than one element length beyond the end of the body: s = 2.01"));
   bent.q[bent.n - 1] = -0.51;
   EXPECT_THROW(bent.at(bent.q, jacobian), SliderOutOfRange);
 }

@@ -62,6 +62,12 @@ TEST(DistributedForce, RefusesWhatCannotBeMeant) {
                   "at least one piece"));
   EXPECT_TRUE(has(refusal([&] { apply_distributed(c.model, c.bar, q, {.from = 0.5, .to = 1.5, .pieces = 1}); }),
                   "outside the body"));
+  // The point forces of the last piece lie inside the bar, but its end does not. No force is added.
+  EXPECT_TRUE(
+      has(refusal([&] { apply_distributed(c.model, c.bar, q, {.from = 0.0, .to = 1.1, .pieces = 2}); }), "s = 1.1 m"));
+  State x = c.model.reference_state();
+  equilibrium(c.model, x);
+  EXPECT_EQ(reaction(c.model, x, c.clamp).f.norm(), 0.0);
 }
 
 }  // namespace distributed_force_test

@@ -145,7 +145,8 @@ TEST_F(CsvFiles, RelativeNameStaysInTheFolderWhereItWasOpened) {
 TEST_F(CsvFiles, RefusesHeadsThatCannotBeMeant) {
   using Heads = std::vector<std::string>;
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{}); }), "at least one column"));
-  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", ""}); }), "the head of column 2 is empty"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", ""}); }),
+                  "the head of column 2, counted from 1, is empty"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", "y", "x"}); }), "\"x\""));
   EXPECT_EQ(files(), 0u);
 }

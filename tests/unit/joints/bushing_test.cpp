@@ -119,7 +119,7 @@ TEST(Bushing, RefusesNegativeStiffnessAndDamping) {
 TEST(Bushing, RefusesAMatrixThatIsNotSymmetric) {
   Matrix k = Matrix::Identity();
   k(1, 4) = 0.5;
-  EXPECT_TRUE(has(said(k), "its entry (2, 5) is 0.5 and its mirror is 0"));
+  EXPECT_TRUE(has(said(k), "its entry (2, 5) is 0.5 and its transposed entry is 0"));
 }
 
 // [1, c; c, 1] has the eigenvalues 1 ± c, for any units of the two entries. A zero on the diagonal permits no
@@ -129,13 +129,13 @@ TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
     Matrix k = Matrix::Identity();
     k(4, 4) = unit * unit;
     k(0, 4) = k(4, 0) = 1.01 * unit;
-    EXPECT_TRUE(has(said(k), "the coupling of its row 5 with the others is too strong"));
+    EXPECT_TRUE(has(said(k), "the coupling of its row 5 with other rows is too strong"));
     k(0, 4) = k(4, 0) = -0.99 * unit;
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
     k(0, 4) = k(4, 0) = unit;  // semidefinite: it leaves one direction free
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
     k(4, 5) = k(5, 4) = 0.1 * unit;  // a free direction permits no coupling
-    EXPECT_TRUE(has(said(k), "the coupling of its row 5 with the others is too strong"));
+    EXPECT_TRUE(has(said(k), "the coupling of its row 5 with other rows is too strong"));
   }
   Matrix k = Bushing::diagonal({1, 1, 1}, {0, 0, 0});
   EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));

@@ -160,7 +160,7 @@ TEST(TrackStress, RefusesANegativeNumberOfElements) {
 // chain carries m v²/p in addition. The mean strain over one revolution of a link is (T₀ + m v²/p)/EA. The runs leave
 // the idler at up to 15° from its guide (2 % of T₀).
 TEST(TrackStress, FollowsTensionOverEA) {
-  for (double const speed : {30.0, 80.0}) {
+  for (auto const& [speed, tolerance] : {std::pair(30.0, 0.06), {80.0, 0.025}}) {
     Ramp const drive{.target = speed, .duration = 0.6, .start = 0.05, .rounding = 0.1};
     double const v = speed * m113::rolling_radius, loop = m113::links * m113::pitch / v, end_time = 0.9 + loop;
     auto const follows = [&](Ride const& r, char const* name) {
@@ -173,10 +173,10 @@ TEST(TrackStress, FollowsTensionOverEA) {
       }
       double const expected = m113::running_strain(v, pull / count);
       held({"thesis §4.4", "mean strain of a link that goes round, of (T₀ + m v²/p)/EA", By::closed_form, "1", name},
-           strain / count / expected, 1.0, 0.1, {equals("speed", speed)});
+           strain / count / expected, 1.0, tolerance, {equals("speed", speed)});
     };
     follows(ride<Rigid<>, Constraint>(drive, end_time, 1e-3, true), "rigid, decoupled");
-    if (speed > 50.0) follows(ride<AncfCable<>, AncfLinear>(drive, end_time, 1e-3, true), "ANCF");
+    follows(ride<AncfCable<>, AncfLinear>(drive, end_time, 1e-3, true), "ANCF");
   }
 }
 

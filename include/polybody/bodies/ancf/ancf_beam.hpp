@@ -41,9 +41,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the reference section [m]
   };
 
-  /// Beam from the straight bar, with n elements of equal length. The rotary inertia of the bar must be positive about
-  /// both axes, because otherwise r_y or r_z has no mass.
-  /// \throws InvalidInput for n < 1, or a bar without a constant that `Elastic` needs.
+  /// Beam from the straight bar, with n elements of equal length. Both rotary inertias must be positive, because r_y or
+  /// r_z has no mass otherwise, and the polar inertia must be Iρ_y + Iρ_z.
+  /// \throws InvalidInput for n outside [1, 10⁷], other inertias, and a bar without a constant that `Elastic` needs.
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
   }
@@ -53,8 +53,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
   /// Beam of n elements with a curved or twisted reference, free of stress except for the pretension. The nodes have
   /// the positions and axes of `curve`; the element field interpolates between them.
-  /// \throws InvalidInput for n < 1, a missing constant, an element whose reference is turned inside out, or a `curve`
-  /// that is not parameterised by arc length.
+  /// \throws InvalidInput as for the straight bar, for an element whose reference is turned inside out, and for nodes
+  /// that coincide or are farther apart than the arc between them.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   char const* coordinate_unit(Index i) const { return i % node_columns < 3 ? "m" : "1"; }
@@ -226,7 +226,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
       return Elastic::section_strains(constants_, deformation(p, q), p.xi);
     }
   }
-  /// Section forces without damping: stiffness times strain for `ElasticLine`, integrals of the stress for `Continuum`.
+  /// Section forces without damping. `ElasticLine`: stiffness × strain + pretension. `Continuum`: stress integrals.
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     if constexpr (std::same_as<Elastic, ElasticLine>)
       return Elastic::section_forces(bar_, this->groups_of(p.element), section_strains(p, q));
@@ -247,7 +247,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
   Mat3 strain(Point const& p, std::span<double const> q) const { return deformation(p, q).strain(p.xi, p.y, p.z); }
   /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms follow from the strain on
-  /// the axis. The shear stresses follow from GA and GA_z, and are therefore means over the section.
+  /// the axis, and S₁₂, S₁₃ follow from GA, GA_z: these shear stresses are means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
     requires(!std::same_as<Elastic, ElasticLine>)
   {

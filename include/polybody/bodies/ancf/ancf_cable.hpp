@@ -14,7 +14,8 @@ using CableGroups =
 
 /// Gradient-deficient ANCF cable in space [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. The position field is
 /// a cubic Hermite polynomial with the coordinates (r, r′) at each node, 12 per element. The mass matrix is constant.
-/// The cable has no torsion, and its section does not deform. With s_i of `hermite_shape`,
+/// The cable has no torsion, and its section does not deform. Of the constants of the bar, only EA, EI and the mass
+/// per length have an effect. With s_i of `hermite_shape`,
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 /// `AncfCable<>::from(bar, n)` has Green strain, `AncfCable<EngineeringStrain>` has engineering strain. The numbers of
 /// Gauss points for axial strain and bending are template parameters; 5 and 3 are suitable for the cubic field
@@ -52,7 +53,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   };
 
   /// Cable from the straight bar, with n elements of equal length.
-  /// \throws InvalidInput for n < 1.
+  /// \throws InvalidInput for n outside [1, 10⁷], and for invalid data of the bar.
   static AncfCable from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
@@ -62,8 +63,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   }
   /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
   /// initial configuration is bent.
-  /// \throws InvalidInput for n < 1, and for a curve that is not parameterised by its arc length. The axial strain of
-  /// the cubic through the nodes must lie in (−0.1, 0.1).
+  /// \throws InvalidInput for n outside [1, 10⁷], and for a curve that is not parameterised by its arc length. The
+  /// axial strain of the cubic through the nodes must lie in (−0.1, 0.1).
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);

@@ -143,8 +143,9 @@ struct Stress {
 };
 
 /// Elastic force by general continuum mechanics. Green–Lagrange strain E = ½ (FᵀF − 1) relative to the reference, with
-/// F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in three dimensions. The energy ½ S :
-/// E is a sum of squares, so that strains do not couple. For τ = 0,
+/// F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in three dimensions. For τ = 0 the
+/// energy ½ S : E is a sum of squares of seven strains, one of which is tr E. Each of these strains has its own
+/// stiffness:
 ///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
 ///
 /// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four
@@ -158,12 +159,12 @@ struct Stress {
 ///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis at the nodes (trapezoidal rule). Between
 ///   the nodes of a bent element, interpolation along the chord gives |r_y| < 1, which would add stiffness;
 ///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points of the section.
-///   Their distance to the axis is scaled so that the torsional stiffness equals GJ of the bar. The quadrature has
-///   three points along x. With two, a mode would have no energy; with three, the element does not lock
+///   The distance of these points from the axis is scaled so that the torsional stiffness equals GJ of the bar. The
+///   quadrature has three points along x. With two, a mode would have no energy; with three, the element does not lock
 ///   (explained at `ElasticLine`).
 ///
 /// Kelvin–Voigt times: axial for normal strains and therefore also for bending; shear for shears. Ė is objective.
-/// `Damping::bending` is not used by this policy.
+/// `Damping::bending` has no effect.
 template <Locking locking = Locking::cured>
 struct Continuum {
   static constexpr char const* name = "AncfBeam<Continuum>";  ///< name of the body type in messages

@@ -16,6 +16,7 @@ namespace polybody {
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the strains of the section, with stiffness EA, EA, GA.
 /// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
 /// On fine meshes the sections therefore keep their shape, and the element converges to the geometrically exact beam.
+/// The thesis (§4.6) cites an elastic line approach of another source, and gives no equations.
 /// Quadrature:
 ///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0 and
 ///   the same transverse r_x at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, which is zero

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4].
+/// Bodies in Cholesky coordinates, for which the mass matrix is the identity [Yakoub & Shabana 1999; thesis §4.4].
 
 #include <vector>
 
@@ -11,7 +11,8 @@ namespace polybody {
 
 /// Body B in Cholesky coordinates p = Lᵀ e, where M = L Lᵀ is the constant mass matrix for the coordinates e [Yakoub &
 /// Shabana 1999; thesis §4.4]. The mass matrix becomes the identity, T = ½ ṗᵀ ṗ, and the forces are Q_p = L⁻¹ Q_e. The
-/// motion does not change. B can be any body with additive coordinates.
+/// motion does not change. B can be any body with a constant mass matrix, coordinates that add, and elements of a fixed
+/// size.
 ///
 /// Points that are linear in e are linear in p, so that `AncfLinear` can join such bodies. With its elimination matrix
 /// T, the mass matrix of the mechanism becomes TᵀT, which couples the bodies. Explicit steps factorise TᵀT once

@@ -63,8 +63,9 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 ///
 /// The result contains the static shapes of the nodal loads `loads` (N×m) and the `count` lowest modes, computed by
 /// `solve`. The shapes are orthogonal with unit modal mass. Linearly dependent shapes are omitted.
-/// \throws InvalidInput for loads that do not fit the structure or are not finite, for a count above the number of
-/// modes, and for a structure that has motions without strain other than rigid ones.
+/// \throws InvalidInput for loads that do not fit the structure or are not finite, for neither loads nor modes, for a
+/// count that is negative or above the number of modes, and for a structure that has motions without strain other than
+/// rigid ones.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   require_finite(loads, "Ffr: the nodal loads of attachment modes");

@@ -304,7 +304,8 @@ Structure structure_of(Bar bar, Index n) {
 class AxialForceStiffness {
  public:
   /// Holds all six coordinates of `node`.
-  /// \throws InvalidInput for a structure that is not made of beams, or not connected.
+  /// \throws InvalidInput for a structure that is not made of beams or not connected, and for a node that does not
+  /// exist.
   template <class = void>
   explicit AxialForceStiffness(Structure const& s, Index node = 0) : structure_(&s) {
     if (s.beams.empty())

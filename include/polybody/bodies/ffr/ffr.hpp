@@ -24,8 +24,8 @@ namespace polybody {
 ///
 /// The coordinates are r (3) of the origin of the frame in world axes, its unit quaternion (4), and q (n). The
 /// generalised velocities are ṙ (3), Ω (3) in the axes of the frame, and q̇ (n). The coordinates q are multiples of
-/// shapes, whose entries are displacements [m] and rotations [rad]. A marker rotates by the small rotation θ = R q of
-/// its section or node, as exp(θ̃).
+/// shapes, whose entries are displacements [m] and rotations [rad]. A marker rotates by exp(θ̃), with the small
+/// rotation θ = R q of its section or node.
 class Ffr {
  public:
   static constexpr World world = World::space;
@@ -39,24 +39,24 @@ class Ffr {
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// Body of the bar in n elements, in mean axes, with geometric stiffening. The 6 n coordinates q are the
-  /// displacements and rotations of the nodes relative to the first end. The option `modes` reduces the number of
+  /// Body of the bar in n elements, by default in mean axes and with geometric stiffening. The 6 n coordinates q are
+  /// the displacements and rotations of the nodes relative to the first end. The option `modes` reduces the number of
   /// coordinates. The coordinates are suitable for all joints, because the frame needs no condition at a joint. The
-  /// placement is that of the bar.
-  /// \throws InvalidInput for n < 1, and for a bar with invalid data or without torsional stiffness GJ.
+  /// placement is that of the bar; `options.placement` has no effect.
+  /// \throws InvalidInput for n outside [1, 10⁷], and for a bar with invalid data or without torsional stiffness GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.complete_for(bar.placement);
     Structure const s = structure_of(bar, n);
     return Ffr(s, bar_shapes(s, n, options, false), options);
   }
-  /// Body of the bar with the number of elements of `mesh`, in mean axes, with geometric stiffening.
+  /// Body of the bar with the number of elements of `mesh`, by default in mean axes and with geometric stiffening.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
   /// Body of a structure with the basis `shapes` (N×n, ffr_basis.hpp), in the frame `options.frame` if it is set.
-  /// \throws InvalidInput for a basis that does not fit the structure or is linearly dependent.
+  /// \throws InvalidInput for a basis that does not fit or is linearly dependent, and if `options.modes` is set.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes = in_frame(structure, std::move(shapes), options),
@@ -64,7 +64,7 @@ class Ffr {
             options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
-  /// Body from integrals that the user computes.
+  /// Body from integrals that the user computes. The options `frame`, `stiffening` and `modes` have no effect.
   /// \throws InvalidInput for integrals that `FfrIntegrals::check` refuses, and for an invalid placement.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : placement_(options.placement), terms_(options.terms) {
@@ -76,7 +76,7 @@ class Ffr {
     made_of_ = std::make_shared<Constants const>(std::move(integrals), std::move(stack));
   }
   /// Copy of the body at another placement. Both bodies share their constants.
-  /// \throws InvalidInput for axes that are not a rotation matrix.
+  /// \throws InvalidInput for an invalid placement (`Placement::check`).
   Ffr placed(Placement const& placement) const {
     placement.check("Ffr");
     Ffr other = *this;
@@ -105,7 +105,7 @@ class Ffr {
     return made().node(i);
   }
   /// Point `at` of the undeformed body [m] that follows the mean motion of a patch of nodes of the structure.
-  /// \throws InvalidInput with geometric stiffening.
+  /// \throws InvalidInput with geometric stiffening, and for a body made of the user's own integrals.
   template <class = void>
   Point patch(NodePatch const& nodes, Vec3 const& at) const {
     return made().patch(nodes, at);
@@ -381,8 +381,8 @@ class Ffr {
   FfrPoints const& made() const {
     if (!points_)
       throw InvalidInput("ffr.integrals_only", {ErrorObject{"Ffr"},
-                                                ": this body was made from integrals only, so it has no nodes. Give "
-                                                "the point as a Point with its matrices S, R."});
+                                                ": this body was made from integrals only, so it has no nodes and no "
+                                                "bars. Give each point as a Point with its matrices S, R."});
     return *points_;
   }
 

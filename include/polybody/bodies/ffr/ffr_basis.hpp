@@ -175,7 +175,8 @@ MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = Re
 }
 
 /// Lowest `count` modes of the structure under the reference conditions, computed by `solve`.
-/// \throws InvalidInput if a rigid motion remains, and for a count above the number of modes.
+/// \throws InvalidInput if a rigid motion remains, for a mass matrix that is not positive definite, and for a count
+/// below one or above the number of modes.
 template <class Eigensolver = DenseModes>
 MatX fixed_interface_modes(Structure const& s, Index count,
                            ReferenceConditions const& frame = ReferenceConditions::clamped(),
@@ -202,11 +203,11 @@ MatX rigid_motions(Structure const& s) {
   return out;
 }
 
-/// Lowest `count` deformation modes of the structure under the conditions `frame`, computed by `solve`; without
-/// conditions, those of the free structure. The frame then follows the mean motion: relative to this frame, momentum
-/// and angular momentum of the deformation vanish to first order (mean axes of Tisserand or Buckens).
-/// \throws InvalidInput for a count above the number of these modes, and for a mass matrix that is not positive
-/// definite.
+/// Lowest `count` deformation modes of the structure under the conditions `frame`, computed by `solve`. Without
+/// conditions, the modes are those of the free structure, and the frame follows the mean motion: relative to this
+/// frame, momentum and angular momentum of the deformation vanish to first order (mean axes of Tisserand or Buckens).
+/// \throws InvalidInput for a count below one or above the number of these modes, and for a mass matrix that is not
+/// positive definite.
 template <class Eigensolver = DenseModes>
 MatX free_interface_modes(Structure const& s, Index count,
                           ReferenceConditions const& frame = ReferenceConditions::none(),
@@ -262,7 +263,7 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   return shapes;
 }
 
-/// Basis of a body from a structure: `shapes` in the frame `options.frame`, or unchanged if it has no value.
+/// Basis of a body from a structure: `shapes` in the frame `options.frame`, or unchanged if this option has no value.
 /// \throws InvalidInput if `options.modes` has a value.
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
@@ -277,8 +278,8 @@ MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
 /// modes, computed by `solve`. The shapes use all coordinates, or those of the plane of x and y if `in_plane`. The
 /// frame is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` the frame follows the
 /// mean motion instead. The basis then consists of the free modes of the reduced model, without the rigid ones.
-/// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
-/// frame tied to a node without rotations.
+/// \throws InvalidInput for no boundary node, boundary nodes that do not exist or are repeated, a structure with parts
+/// that no boundary node holds, a count above the number of modes, or a frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
 MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
                    bool in_plane = false, Eigensolver const& solve = {}) {

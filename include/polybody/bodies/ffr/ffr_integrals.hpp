@@ -81,8 +81,8 @@ struct FfrIntegrals {
   }
 
   /// Checks the sizes, the mass and the entries.
-  /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
-  /// not symmetric and positive definite.
+  /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, an entry that is not finite
+  /// or exceeds `largest_number`, or a mass matrix that is not symmetric and positive definite.
   template <class = void>
   void check(std::string const& what) const {
     require_sizes(what);

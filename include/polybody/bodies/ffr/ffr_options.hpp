@@ -15,7 +15,7 @@ namespace polybody {
 struct FfrTerms {
   bool coupling = true;  ///< m_rf: C and H in the mass matrix; ċ, Ċ q̇, H q̇ and H˙ q̇ in the rows of the frame
   bool onto_frame =
-      true;  ///< the terms of `coupling` in the rows of the frame; if false, the deformation does not act on the frame
+      true;  ///< the terms of `coupling` in the rows of the frame; if false, q acts on the frame only by c, J and J˙
   bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body instead of those at q = 0, in inertia and weight
   bool frame_velocities = true;  ///< quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇ on the frame; if
                                  ///< false, only those of a rigid body remain
@@ -33,7 +33,7 @@ struct FfrTerms {
 
   /// Returns true if accelerations of the deformation act on the frame.
   bool couples_to_frame() const { return coupling && onto_frame; }
-  /// Returns true if velocities of the deformation act on the frame.
+  /// Returns true if ċ, Ċ q̇, H q̇ and H˙ q̇ act on the frame.
   bool couples_frame_velocity() const { return couples_to_frame() && frame_velocities; }
   bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< true if J˙ acts on the frame
   /// Selected part of a derivative ∂J_p/∂q_k, from its value `slope` at q and its value `by` at q = 0.
@@ -54,15 +54,16 @@ enum class FfrFrame {
 
 /// Placement of a body, terms of its inertia, frame, stiffening and damping.
 struct FfrOptions {
-  Placement placement = {};  ///< initial placement of the frame
+  Placement placement = {};  ///< initial placement of the frame; a body from a bar has the placement of the bar
   FfrTerms terms = {};       ///< selected terms of the inertia
   /// Frame of the deformation. Default for a body from a bar: `mean_axes`. Default for a body from a structure: the
   /// frame in which its shapes are given; the shapes remain unchanged.
   std::optional<FfrFrame> frame = {};
   /// Geometric stiffening, for beams only. Default: on for a body from a bar, off for a body from a structure.
   std::optional<bool> stiffening = {};
-  /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of both
-  /// ends replace the nodal coordinates [Craig & Bampton 1968]. The resulting basis is suitable for joints at the ends.
+  /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of the
+  /// second end relative to the first (6, in the plane 3) replace the nodal coordinates [Craig & Bampton 1968]. The
+  /// resulting basis is suitable for joints at the ends.
   std::optional<Index> modes = {};
   double stiffness_damping = 0.0;  ///< damping time τ [s]; adds τ K to the damping matrix
 

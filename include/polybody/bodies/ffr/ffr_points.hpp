@@ -131,7 +131,7 @@ struct FfrPoint {
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
     return sum;
   }
-  /// Section forces (N, M) for the deformation q [N], [N m], without shear and damping.
+  /// Section forces (N, M) for the deformation q [N], [N m], without shear, damping and pretension.
   template <class = void>
   Vec6 section_forces(double const* q) const {
     Vec6 n = section_strains(q);
@@ -279,7 +279,7 @@ class FfrPoints {
   Structure s_;
   MatX shapes_;
   std::optional<AxialForceStiffness> axial_;
-  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ; empty with stiffening
+  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ; empty with stiffening or without beams
 };
 
 }  // namespace polybody

@@ -31,21 +31,21 @@ class Ffr : public AddingCoordinates {
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// Body of the bar in n elements, in mean axes, with geometric stiffening. It has 3 n coordinates q, like
-  /// `polybody::Ffr` without the motions out of the plane. The bar needs no GJ.
-  /// \throws InvalidInput for n < 1, for a bar with invalid data, and for a placement that leaves the plane.
+  /// Body of the bar in n elements, at the placement of the bar. By default it has mean axes and geometric stiffening.
+  /// The 3 n coordinates q are displacements and rotations of the nodes in the plane. The bar needs no GJ.
+  /// \throws InvalidInput for n outside [1, 10⁷], invalid data of the bar, and a placement that leaves the plane.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.complete_for(bar.placement);
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, bar_shapes(s, n, options, true), options);
   }
-  /// Body of the bar with the number of elements of `mesh`, in mean axes, with geometric stiffening.
+  /// Body of the bar with the number of elements of `mesh`, by default in mean axes and with geometric stiffening.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
-  /// Structure of a bar with n elements, for use in the plane only. \throws InvalidInput for n < 1 or invalid data.
+  /// Structure of a bar in n elements, for the plane. \throws InvalidInput for n outside [1, 10⁷] or invalid data.
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
@@ -70,7 +70,7 @@ class Ffr : public AddingCoordinates {
                                                 "with in_plane = true or restrict_to_plane()."});
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
-  /// Body from integrals that the user computes.
+  /// Body from integrals that the user computes. The options `frame`, `stiffening` and `modes` have no effect.
   /// \throws InvalidInput for integrals that `FfrIntegrals::check` refuses, and for a placement that leaves the plane.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
@@ -385,8 +385,8 @@ class Ffr : public AddingCoordinates {
   FfrPoints const& made() const {
     if (!points_)
       throw InvalidInput("ffr.integrals_only", {ErrorObject{"planar::Ffr"},
-                                                ": this body was made from integrals only, so it has no nodes. Give "
-                                                "the point as a Point with its matrices S, R."});
+                                                ": this body was made from integrals only, so it has no nodes and no "
+                                                "bars. Give each point as a Point with its matrices S, R."});
     return *points_;
   }
 

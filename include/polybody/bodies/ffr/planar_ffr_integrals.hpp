@@ -52,7 +52,7 @@ struct FfrIntegrals {
     if (s.stiffens()) x.first_second = {s.first_second[0], s.first_second[1]};
     return x;
   }
-  /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass and mass matrix.
+  /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass, mass matrix and entries.
   /// \throws InvalidInput naming `what` for integrals that this check refuses, for a `coupling_by` that is not
   /// skew-symmetric without stiffening, and for a moment of inertia that is not positive.
   template <class = void>

@@ -19,9 +19,9 @@ inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};  ///< column inde
 inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /// Linear finite element model of one body in its own axes. Each node has displacements (3), or displacements and small
-/// rotations (6), in the axes of the body. With the displacement field u(x) = u₀(x) + S(x) e and the nodal
-/// displacements e, the structure stores the stiffness and the inertia shape integrals [Shabana 2013, ch. 5–6; thesis
-/// App. A]
+/// rotations (6), in the axes of the body. With the position u(x) = u₀(x) + S(x) e of the material point x and the
+/// nodal coordinates e, the structure stores the stiffness and the inertia shape integrals [Shabana 2013, ch. 5–6;
+/// thesis App. A]
 ///   ∫ρ, ∫ρ u₀, ∫ρ u₀u₀ᵀ, ∫ρ S_k, ∫ρ u₀ₖ S_l, ∫ρ S_kᵀ S_l,   k, l = x, y, z.
 /// The integrals are exact, so that the inertia of a rigid body follows from them for every mesh.
 struct Structure {

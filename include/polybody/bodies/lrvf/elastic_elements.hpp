@@ -36,7 +36,7 @@ struct SectionStrains {
 class LrvfSection {
  public:
   /// Section for elements of arc length `l`.
-  /// \throws InvalidInput for a missing stiffness.
+  /// \throws InvalidInput unless EA, GA, GA_z, GJ, EI_y and EI are positive.
   template <class T = double>  // compiled only if used
   LrvfSection(Bar const& bar, BarConstants const& c, double l) : l_(l), pretension_(bar.pretension) {
     double const shear = bar.damping.shear, bending = bar.damping.bending;
@@ -51,7 +51,8 @@ class LrvfSection {
     }
   }
 
-  /// Copy of the section for the quadrature point p: each stiffness is multiplied by the weight of its strain.
+  /// Copy of the section for the quadrature point p. The weight of each strain multiplies its stiffness, and that of
+  /// the axial strain also the pretension.
   LrvfSection weighted(StrainPoint const& p) const {
     LrvfSection out = *this;
     for (int i = 0; i < 6; ++i) out.stiffness_[i] *= i == 0 ? p.axial : i < 3 ? p.shear : p.curvature;

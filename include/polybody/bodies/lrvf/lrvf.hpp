@@ -57,7 +57,7 @@ class Lrvf {
   };
 
   /// Beam from the straight bar, with n elements of equal length.
-  /// \throws InvalidInput for n < 1, and for a bar without a shear or torsional stiffness (GA, GJ, ...).
+  /// \throws InvalidInput for n outside [1, 10⁷], and unless GA, GA_z, GJ and EI_y of the bar are positive.
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
   }
@@ -67,8 +67,8 @@ class Lrvf {
   }
   /// Beam of n elements whose undeformed shape is `curve`, bent and twisted, free of stress except for the pretension.
   /// The parameter of the curve is its arc length.
-  /// \throws InvalidInput for n < 1, for a missing stiffness (GA, GJ, ...), and for a curve on which nodes coincide or
-  /// are farther apart than the arc between them.
+  /// \throws InvalidInput as for the straight bar, for an empty `curve`, and for a curve on which nodes coincide or are
+  /// farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     if (!curve)

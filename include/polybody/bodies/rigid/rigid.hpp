@@ -40,9 +40,9 @@ std::array<double, 3> principal_values(Mat3 const& a) {
 }  // namespace detail
 
 /// Requires an inertia tensor that a distribution of mass can have.
-/// \throws InvalidInput, with a message that begins with `what`, unless `inertia` J is finite and symmetric, no
-/// principal moment is negative, and none exceeds the sum of the other two (½ tr(J) 1 − J ⪰ 0). The tolerance is 1e-9
-/// of the largest entry.
+/// \throws InvalidInput, with a message that begins with `what`, unless `inertia` J is symmetric with entries up to
+/// `largest_number`, no principal moment is negative, and none exceeds the sum of the other two (½ tr(J) 1 − J ⪰ 0).
+/// The tolerance is 1e-9 of the largest entry.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what, ": the inertia");
@@ -86,7 +86,7 @@ class RigidShape {
     Vec3 u = Vec3::Zero();  ///< (3) position from the centre of mass, body axes [m]
   };
 
-  /// Mass properties and placement of a body that is not made from a bar.
+  /// Mass properties and placement of a rigid body.
   struct Parameters {
     Required<double> mass;        ///< [kg]
     Mat3 inertia = Mat3::Zero();  ///< (3×3) about the centre of mass, body axes [kg m²]

@@ -14,7 +14,8 @@ struct EulerParameters {};
 /// (r, θ), with the centre of mass r in world axes [m] and θ = (θ₀, θ₁, θ₂, θ₃). The seven generalised velocities are
 /// the rates of the coordinates. The body has the constraint equation ½ (θᵀθ − 1) = 0. With
 ///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
-/// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c; hence
+/// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c. Velocities that satisfy the
+/// constraint equation have θ·θ̇ = 0. Then Ω̇ = Ḡ θ̈, and hence
 ///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
 /// M is singular along θ, and the constraint equation removes this singularity. Due to the division by |θ|², A is a
 /// rotation matrix and Ḡ θ̇ its angular velocity even if the constraint equation is not exactly satisfied.

@@ -9,7 +9,7 @@
 namespace polybody::detail {
 
 /// Writes the marker kinematics of the point u with the axes `axes`, both in body axes, to `out`; `at` is the pose of
-/// the body. The result is bitwise identical to that of `Rigid::evaluate_marker`.
+/// the body. The result is bitwise identical to that of the scalar loops in `Rigid::evaluate_marker`.
 template <class Pose, class V = Vec3Storage<>>  // compiled only if used
 void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, MarkerKinematics<double>& out) {
   V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());

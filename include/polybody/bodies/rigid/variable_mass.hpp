@@ -11,14 +11,14 @@
 
 namespace polybody {
 
-/// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body:
+/// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body. Example:
 ///
 ///     VariableMass<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
 ///
-/// The equation M(t) v̇ = f is valid if mass leaves or arrives with the velocity of the body at that point. Mass that
-/// leaves with another velocity exerts a force on the body: −ṁ u for an outflow ṁ > 0 [kg/s] with the velocity u [m/s]
-/// relative to the body. Apply this force with a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch.
-/// 1]. Energies are computed with the mass at the time of the state.
+/// The equation M(t) v̇ = f is valid if mass leaves or arrives with the velocity of the body at the point of exit or
+/// entry. Mass that leaves with another velocity exerts a force on the body: −ṁ u for an outflow ṁ > 0 [kg/s] with the
+/// velocity u [m/s] relative to the body. Apply this force with a force element [Meshchersky 1897; Goldstein, Poole &
+/// Safko 2002, ch. 1]. Energies are computed with the mass at the time of the state.
 template <Body B>
 class VariableMass : public B {
   static_assert(HasRigidLayout<B>,

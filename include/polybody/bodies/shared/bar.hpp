@@ -65,10 +65,10 @@ struct Bar {
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar has `constants`
   std::optional<Material> material = {};                         ///< material of the section
   std::optional<BarConstants> constants = {};                    ///< constants that replace section and material
-  Placement placement = {};                 ///< placement of the first end; the axis of the bar is its x axis
-  Damping damping = {};                     ///< damping of the material
-  double pretension = 0.0;                  ///< axial force in the reference configuration [N]
-  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; default: Cowper's formula
+  Placement placement = {};  ///< placement of the first end; the bar lies along the x axis of the placement
+  Damping damping = {};      ///< damping of the material
+  double pretension = 0.0;   ///< axial force in the reference configuration [N]
+  std::optional<double> shear_factor = {};  ///< factor k of k G A, with `section` only; default: Cowper's formula
 };
 
 /// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body type accepts a mesh. The number
@@ -159,7 +159,8 @@ template <class = void>  // compiled only if used
   for (auto const& [x, what] : all) require_size(x, of + what);
 }
 /// Checks the constants of a bar that follow from its section and material.
-/// \throws InvalidInput if EA, EI or the mass per length is not positive, or if a constant is too large or too small.
+/// \throws InvalidInput if EA, EI or the mass per length is not positive, or for a constant that `require_sizes`
+/// refuses.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_section_sizes(Bar const& bar, BarConstants const& c) {
   std::string of = "Bar: with a section of ";

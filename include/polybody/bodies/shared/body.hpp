@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Concepts of bodies: the members that a formulation must have. The last function computes the load stiffness of a
-/// marker by dual numbers.
+/// Concepts of bodies, which list the members that a body type must have. Further contents are the workspaces of loops
+/// over elements, and the load stiffness of a marker by dual numbers.
 
 #include <span>
 
@@ -99,7 +99,7 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
-/// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters:
+/// Body with its own constraint equations between its coordinates, such as |θ| = 1 for Euler parameters θ:
 ///   Φ(q) = 0,  G = ∂Φ/∂q,  Φ̈ = G v̇ + γ.
 /// G has `own_equations` rows and one column for each generalised velocity of the body. The number of generalised
 /// velocities is known at compile time. The equations are counted and solved like those of a joint.
@@ -220,8 +220,8 @@ struct PoseOf<B, T> {
 }  // namespace detail
 
 /// Load stiffness ∂(Jᵀw)/∂q (columns × columns) of a marker whose J has a fixed number of columns, by dual numbers. The
-/// function is for bodies without a closed form whose coordinates add: q ⊞ δ = q + δ. `body.local(p)` is the point p of
-/// a body that has only the coordinates of the marker.
+/// coordinates of the body must add, q ⊞ δ = q + δ. `body.local(p)` is the point p for a body that has only the
+/// coordinates on which the marker depends.
 template <class B>
 void load_stiffness_by_dual_numbers(B const& body, typename B::Point const& p, std::span<double const> q,
                                     Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {

@@ -16,8 +16,8 @@ namespace polybody {
 /// The y axis of the section lies in the plane of the curve.
 /// \param end (3) position of the second end, in the axes of the bar [m] \param length L [m], greater than |end|
 /// \param down (3) direction of the weight, in the axes of the bar; any length
-/// \throws InvalidInput for a cable that is not longer than the distance of its ends, for ends on one vertical line,
-/// and for `down` without a direction.
+/// \throws InvalidInput for L ≤ (1 + 1e-9) |end|, for d ≤ 1e-6 L (ends on one vertical line), for `down` = 0, and for
+/// numbers that are not finite.
 template <class = void>  // compiled only if used
 ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
   require_finite(end, "catenary: the end");

@@ -32,8 +32,9 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }  // namespace detail
 
 /// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping the tangent is symmetric, and
-/// only the blocks on and below the diagonal are computed. The blocks of the first nodal vector are the negative blocks
-/// of the vector `difference`, which is read relative to the first one (`StrainMap`).
+/// only the blocks on and below the diagonal are computed. If the strains read the vector `difference` relative to
+/// vector 0 (`StrainMap`), the blocks of vector 0 follow from those of `difference`: block (0, 0) is equal, and the
+/// other blocks are negative.
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,
                 Mat<T, n, n>& k) {
@@ -41,7 +42,7 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
   constexpr int d = P::d, difference = std::max({Groups::P::difference...}), first = difference > 0 ? 1 : 0;
   static_assert(
       ((Groups::P::difference == difference || !Groups::P::reads(0)) && ...),
-      "An element may have at most two strain groups: one of nodal positions and one of position differences.");
+      "Every strain group of an element must either use the same position difference or not read nodal vector 0.");
   bool const symmetric = std::apply([](auto const&... group) { return !(group.damped() || ...); }, groups);
   std::tuple<typename Groups::template Prepared<T>...> prepared;
   auto const for_each = [&]<std::size_t... I>(std::index_sequence<I...>, auto&& f) {
@@ -84,7 +85,7 @@ class ElasticChain : public NodeChain<columns> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
 
-  /// Returns true if all elements have the same reference configuration.
+  /// Returns true if all elements have the same strain groups, such as those of a straight bar.
   bool alike() const { return groups_.size() == 1; }
   /// Returns true if all elements of both chains have the same strain groups.
   bool same_strains(ElasticChain const& other) const { return alike() && groups_ == other.groups_; }
@@ -126,8 +127,8 @@ class ElasticChain : public NodeChain<columns> {
     for_each_group(e, [&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
   }
 
-  /// Strain energy of element e [J]. With a pretension, its value in the reference configuration depends on the type of
-  /// beam: zero, or the energy of the prestress.
+  /// Strain energy of element e [J]. With a pretension N, an undeformed element of length l has the energy N² l/(2 EA)
+  /// in `AncfBeam`, and zero in cables and planar beams.
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = of_element(e, q);
     double u = 0.0;

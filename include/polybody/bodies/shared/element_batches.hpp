@@ -108,7 +108,7 @@ Index batches_end(B const& body, ElementRange range) {
   }
 }
 
-/// Residuals M a − force of `simd_size` elements that are equal to those of `body`.
+/// Residuals M a − force of `simd_size` elements, which differ from those of `body` only in their coordinates.
 template <class B>
 void residuals_of_batch(B const& body, SimdMotion const& x,
                         std::array<Vec<double, B::element_columns>, simd_size>& each) {
@@ -132,7 +132,8 @@ void residual_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratc
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// Tangents `inertia` + cd D + ck K of `simd_size` elements that are equal to those of `body`.
+/// Tangents `inertia` + cd D + ck K of `simd_size` elements, which differ from those of `body` only in their
+/// coordinates.
 template <class B>
 void tangents_of_batch(B const& body, SimdMotion const& x, ElementCoefficients c,
                        Mat<double, B::element_columns, B::element_columns> const& inertia,

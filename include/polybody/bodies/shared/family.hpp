@@ -27,7 +27,7 @@ inline constexpr std::string_view ffr_modal = "FFR, modal coordinates";  ///< `F
 inline constexpr std::string_view other = "other body";                  ///< a body without a family
 }  // namespace families
 
-// Declarations of bodies and of their policies, whose headers the user of this header need not include.
+// Declarations of bodies and of their policies, so that this header does not include the headers of the bodies.
 template <class Rotation>
 class Rigid;
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Base classes of bodies whose coordinates form a vector space: `AddingCoordinates`, and `NodeChain` for chains of
-/// nodes.
+/// nodes. `HasDiscreteForce` is the concept of their discrete-gradient force.
 
 #include <polybody/bodies/shared/body.hpp>
 

@@ -82,8 +82,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   };
 
   /// Beam from the straight bar, with n elements of equal length.
-  /// \throws InvalidInput for n < 1, a placement that leaves the plane, or a bar without a stiffness that the theory
-  /// needs.
+  /// \throws InvalidInput for n outside [1, 10⁷], a placement that leaves the plane, or a bar without a stiffness that
+  /// the theory needs.
   static Beam from(Bar const& bar, Index n) {
     require_elements(n, Theory::name);
     BarConstants const c = polybody::constants(bar);
@@ -98,20 +98,21 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Beam of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so that
   /// the beam is bent in the reference state.
-  /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
-  /// or is not parameterised by its arc length.
+  /// \throws InvalidInput for n outside [1, 10⁷], a bar without a stiffness that the theory needs, and a curve that
+  /// leaves the plane or is not parameterised by its arc length.
   static Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.laid_ = beam.nodes_on(bar.placement, curve);
     return beam;
   }
 
-  /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
+  /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension. For zero
+  /// pretension
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, where ε⁰ are the strains when all nodes are on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
-  /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
-  /// or is not parameterised by its arc length. The axial strain of an element relative to the arc length must lie in
-  /// (−0.1, 0.1).
+  /// \throws InvalidInput for n outside [1, 10⁷], a bar without a stiffness that the theory needs, and a curve that
+  /// leaves the plane or is not parameterised by its arc length. The axial strain of an element relative to the arc
+  /// length must lie in (−0.1, 0.1).
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);

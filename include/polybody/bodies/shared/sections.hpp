@@ -16,7 +16,8 @@ namespace polybody {
 ///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
 ///                    without damping. The part beyond the section exerts these forces on the part before the section.
 /// Components that a formulation does not have are zero: a cable has no shear and no torsion. Cables and floating
-/// frames also return zero for the shear force, which is the derivative of the bending moment along the axis.
+/// frames also return zero for the shear force, which is the derivative of the bending moment along the axis. The axial
+/// force of a floating frame does not include the pretension of the bar.
 template <class B>
 concept HasSections = requires(B const b, typename B::Point p, std::span<double const> q) {
   { b.section_strains(p, q) } -> std::convertible_to<Vec6>;

@@ -9,9 +9,9 @@
 namespace polybody {
 
 /// Force and tangent of an element from the strains of a law. The energy is
-///   U = ½ ∫ Σ_i C_i (ε_i(p) − ε⁰_i)² dx,  with the parameters p = P(x) e of the group.
-/// The parameters are linear in the coordinates e of the element. ε⁰ are the strains in the stress-free state, zero by
-/// default. With the damping times τ_i (Kelvin–Voigt) and the initial stress n⁰, the stress is n_i = C_i (ε_i −
+///   U = ∫ Σ_i [½ C_i (ε_i(p) − ε⁰_i)² + n⁰_i (ε_i(p) − ε⁰_i)] dx,  with the parameters p = P(x) e of the group.
+/// The parameters are linear in the coordinates e of the element. ε⁰ are the stress-free strains, and n⁰ is the initial
+/// stress; both are zero by default. With the damping times τ_i (Kelvin–Voigt), the stress is n_i = C_i (ε_i −
 /// ε⁰_i + τ_i ε̇_i) + n⁰_i. With B = ∂ε/∂p and H_i = ∂²ε_i/∂p²,
 ///   f = −∫ Pᵀ Bᵀ n dx,
 ///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,

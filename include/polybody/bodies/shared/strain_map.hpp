@@ -86,8 +86,8 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// Distributes the force `step` on the difference e_v − e_0: adds it to the force on e_v in f, and subtracts it from
-  /// the force on e_0.
+  /// Adds `step`, the force on the difference e_v − e_0, to the force on e_v in f, and subtracts it from the force on
+  /// e_0.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)
@@ -137,7 +137,7 @@ class StrainMap {
       for (int j = 0; j < reach; ++j) most = std::max(most, Law::vector(s, j));
     return most + 1;
   }();
-  /// Number of factors in N.
+  /// Number of factors N_sj that belong to a nodal vector, `vector(s, j)` ≥ 0.
   static constexpr int count = [] {
     int sum = 0;
     for (int s = 0; s < shapes; ++s)

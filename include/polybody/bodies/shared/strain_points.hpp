@@ -103,7 +103,7 @@ class StrainPoints {
   }
 
   Strains const& stiffness() const { return stiffness_; }  ///< C of each strain [N] or [N m²]
-  /// Stress for the strains `strain`, without damping.
+  /// Stress C (ε − ε⁰) + n⁰ without damping, where `strain` is ε − ε⁰.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
 
   /// Strains ε at ξ of an element of length l with coordinates x.
@@ -144,7 +144,7 @@ class StrainPoints {
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force exerts no moment on the body if strains are
   /// scalar products of the parameters. A strain vector that rotates with the body enters through its square z
   /// (`HasSquare`): n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), with κ₀ = 1e-3 1/m, which agrees with the damping of
-  /// `objective_rate`. The term of `decay` then exerts a moment.
+  /// `objective_rate`. ε⁰ and n⁰ then have no effect, and the term of `decay` exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
                       Vec<double, n>& f) const {

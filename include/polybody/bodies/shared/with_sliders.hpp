@@ -38,8 +38,9 @@ struct Slider {
 ///
 /// A slider depends on all columns of the body, because its element changes with s. Its Jacobian therefore has a column
 /// for each generalised velocity of the body, and its load stiffness is dense. When the slider passes a node, r″ and
-/// the accelerations jump. Beyond an end of the body, the cubic of the last element continues for one element length,
-/// so that a step may end there. `slider_end_event` (run/sliders.hpp) is a terminal event at both ends of the body.
+/// the accelerations jump. Beyond an end of the body, the cubic of the element at this end continues for one element
+/// length, so that a step may end there. `slider_end_event` (run/sliders.hpp) is a terminal event at both ends of the
+/// body.
 template <Body B>
 class WithSliders : public B {
   static_assert(SmoothAxis<B>,
@@ -146,8 +147,8 @@ class WithSliders : public B {
     if (!(s >= -l && s <= B::length() + l) && std::isfinite(s))
       throw SliderOutOfRange(
           "slider.out_of_range",
-          {ErrorObject{"WithSliders"}, ": a slider is beyond the end of the body: s = ", ErrorValue{s},
-           " m, but the length is ", B::length(),
+          {ErrorObject{"WithSliders"}, ": a slider is more than one element length beyond the end of the body: s = ",
+           ErrorValue{s}, " m, but the length is ", B::length(),
            " m. End the run at the ends of the body with slider_end_event, or hold the slider on the body."});
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};

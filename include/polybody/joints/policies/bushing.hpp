@@ -24,7 +24,8 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
       auto const entry = [&] { return sentence_of({"its entry (", i + 1, ", ", j + 1, ") is ", k(i, j)}); };
       double const scale = std::sqrt(k(i, i) * k(j, j));
       if (!std::isfinite(k(i, j)) || (i == j && k(i, j) < 0.0)) refuse(entry());
-      if (std::abs(k(i, j) - k(j, i)) > 1e-9 * scale) refuse(entry() + " and its mirror is " + number(k(j, i)));
+      if (std::abs(k(i, j) - k(j, i)) > 1e-9 * scale)
+        refuse(entry() + " and its transposed entry is " + number(k(j, i)));
       if (scale == 0.0 && k(i, j) != 0.0) refuse(entry() + " although a diagonal entry of its row or column is zero");
       l[i][j] = scale > 0.0 ? k(i, j) / scale : 0.0;
     }
@@ -32,7 +33,7 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
     bool const lost = std::abs(l[i][i]) < 1e-10;
     for (int r = i; r < 6; ++r)
       if (l[i][i] <= -1e-10 || (lost && std::abs(l[r][i]) > 1e-5))
-        refuse("the coupling of its row " + std::to_string(i + 1) + " with the others is too strong");
+        refuse("the coupling of its row " + std::to_string(i + 1) + " with other rows is too strong");
     if (lost) continue;
     for (int r = i + 1; r < 6; ++r)
       for (int c = i + 1; c < 6; ++c) l[r][c] -= l[r][i] * l[i][c] / l[i][i];
@@ -44,7 +45,8 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
 /// of b relative to a in the joint's axes, fixed in a: translations [m], then rotations [rad], of any size. The free
 /// directions of the geometry stay free: their rows and columns of K and C have no effect. For a stiffness in all
 /// directions (a torsional spring in a revolute joint, within half a turn), use `RelativeCoordinates` as the geometry,
-/// which has no free direction. The elastic force derives exactly from the potential ½ xᵀK x.
+/// which has no free direction. The elastic force derives exactly from the potential ½ xᵀK x. The rate ẋ is the exact
+/// derivative of x. In the thesis it is Aᵀṙ, without the term of Ȧ, the rotation of the axes.
 struct Bushing {
   static constexpr char const* name = "Bushing";
   static constexpr bool linear = true;  ///< true: λ is linear in g and ġ

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies, and linear joints of ANCF bodies.
+/// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies and floating frames, and linear joints
+/// of ANCF bodies and of `planar::Lrvf`.
 
 #include <polybody/joints/joint_motion.hpp>
 #include <polybody/joints/policies/policy.hpp>
@@ -14,15 +15,15 @@ namespace joint_coordinates {
 struct Augmented {};
 /// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
 /// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so the method
-/// is efficient only if they are few.
+/// is efficient only if they are few. The method supports rigid bodies only.
 struct ArticulatedBody {};
 }  // namespace joint_coordinates
 
 /// Joint coordinates: the pose of body b is the pose of body a followed by the relative motion of the joint. The
 /// unknowns of a time step are the coordinates of this motion alone. These coordinates satisfy the joint's constraint
 /// equations exactly; multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from
-/// the ground, or from a free body; a joint that closes a loop needs another policy. The bodies must be rigid [Shabana
-/// 2020, §3; thesis §3.3.2].
+/// the ground, or from a free body; a joint that closes a loop needs another policy. The bodies must be rigid bodies or
+/// floating frames (`Ffr`) [Shabana 2020, §3; thesis §3.3.2].
 template <class Path>
 struct JointCoordinatesBy {
   static constexpr char const* name = "JointCoordinates";
@@ -38,14 +39,14 @@ using JointCoordinates = JointCoordinatesBy<joint_coordinates::Augmented>;
 template <class P>
 concept JointCoordinatePolicy = EliminatingPolicy<P> && requires { typename P::Solution; };
 
-/// Linear joint of ANCF bodies. Its equations contain positions and position gradients, which are linear in the
-/// coordinates,
+/// Linear joint of ANCF bodies and of `planar::Lrvf`. Its equations contain positions and position gradients, which are
+/// linear in the coordinates,
 ///   S_a e_a − S_b e_b = c,
 /// with the nodal coordinates e of both bodies, constant matrices S of shape functions and their derivatives, and
 /// constants c.
 /// Dependent coordinates are eliminated before the run. The mass matrix stays constant, and a time step has no
 /// multipliers. Reactions are computed afterwards from the balance of each element [thesis §3.5.4; Shabana, Hamed,
-/// Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to ANCF bodies or the ground.
+/// Mohamed, Jayakumar & Letherwood 2012]. Both markers belong to these bodies or the ground.
 ///   Spherical (in the plane Revolute): equal positions r.
 ///   Revolute about n: equal r and equal gradients r_α, with the material line α along n. Six equations between bodies
 ///     with all gradients.

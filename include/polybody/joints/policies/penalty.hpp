@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Penalty policies: a spring and a damper replace each constraint equation.
+
 #include <polybody/joints/policies/policy.hpp>
 
 namespace polybody {

@@ -6,7 +6,7 @@
 
 #include "m113/modal_links.hpp"
 
-namespace chapter4 {
+namespace chapter3 {
 
 namespace {
 
@@ -18,12 +18,13 @@ struct Surface {
   VecX bending;   // (n) strain by bending in the middle, in the fibre towards the wheels
 };
 
-Surface const& surface(Options const& o) {
-  static std::map<std::string, Surface> read;
-  if (auto const found = read.find(o.files); found != read.end()) return found->second;
+Surface const& surface(LinkSettings const& o) {
+  static std::map<std::pair<std::string, Index>, Surface> read;
+  std::pair const key(o.files, o.modes.value_or(3));
+  if (auto const found = read.find(key); found != read.end()) return found->second;
   auto const file = [&](char const* name) { return (fs::path(o.files) / name).string(); };
   auto const link = m113::finite_element_link(
-      read_structure(file("link.mass.mtx"), file("link.stiffness.mtx"), file("link.nodes.txt")));
+      read_structure(file("link.mass.mtx"), file("link.stiffness.mtx"), file("link.nodes.txt")), key.second);
   NodalStress const stress =
       NodalStress::read(file("link.stress.mtx"), file("link.stress_nodes.txt"), link->structure.size());
   auto const along = [&](char const* name) -> VecX {
@@ -37,14 +38,14 @@ Surface const& surface(Options const& o) {
     return link->section(x).motion(x * Vec3::UnitX(), link->shapes).displacement.row(0);
   };
   VecX const strain = (moved(third) - moved(-third)) / (2.0 * third);
-  return read.emplace(o.files, Surface{link, stress, stress.matrix() * link->shapes, strain, bending}).first->second;
+  return read.emplace(key, Surface{link, stress, stress.matrix() * link->shapes, strain, bending}).first->second;
 }
 
 }  // namespace
 
-std::shared_ptr<m113::FiniteElementLink const> finite_element_link(Options const& o) { return surface(o).link; }
+std::shared_ptr<m113::FiniteElementLink const> finite_element_link(LinkSettings const& o) { return surface(o).link; }
 
-void add_surface(LinkHistory& h, Options const& o, BodyRecord const& record) {
+void add_surface(LinkHistory& h, LinkSettings const& o, BodyRecord const& record) {
   Surface const& s = surface(o);
   DecoupledStress const stress =
       DecoupledStress::quasi_static(s.link->structure, record, {.patches = s.link->patches()});
@@ -52,7 +53,7 @@ void add_surface(LinkHistory& h, Options const& o, BodyRecord const& record) {
     h.surface[spot.name] = s.stress.von_mises(spot.name, stress.displacements());
 }
 
-void add_surface(LinkHistory& h, Options const& o, Eigen::Ref<VecX const> const& q) {
+void add_surface(LinkHistory& h, LinkSettings const& o, Eigen::Ref<VecX const> const& q) {
   Surface const& s = surface(o);
   VecX const stress = s.by_modes * q;
   Index row = 0;
@@ -64,4 +65,4 @@ void add_surface(LinkHistory& h, Options const& o, Eigen::Ref<VecX const> const&
   h.bending.push_back(s.bending.dot(q));
 }
 
-}  // namespace chapter4
+}  // namespace chapter3
