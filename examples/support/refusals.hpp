@@ -48,11 +48,11 @@ constexpr char const* integrator_refusal() {
   if constexpr (CompatibleIntegrator<I, M>)
     return "";
   else if constexpr (!FullStateModel<M>)
-    return "EnergyMomentum does not support policies that eliminate coordinates, such as AncfLinear and "
-           "JointCoordinates. Use Constraint.";
+    return "EnergyMomentum and EnergyDecaying do not support policies that eliminate coordinates, such as AncfLinear "
+           "and JointCoordinates. Use Constraint.";
   else if constexpr (!SecantSupport<M>::bodies)
-    return "EnergyMomentum needs bodies with a constant mass matrix and a mean force over a step: cables, ANCF beams, "
-           "planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.";
+    return "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step: "
+           "cables, ANCF beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.";
   else
     static_assert(sentence_missing<M>, "Add the sentence of system_for.");
 }

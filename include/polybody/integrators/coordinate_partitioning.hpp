@@ -15,10 +15,10 @@ namespace polybody {
 /// again if the rank of G changes, or if a dependent coordinate would move more than `largest_ratio` times as fast as
 /// an independent one. G_d⁻¹ G_i, and with it the condition number of G_d, is then too large. Nonholonomic equations
 /// make velocities dependent, but not coordinates; velocities then have a partition of their own. The ratios depend on
-/// the units, because they compare metres with radians. With at most `dense_up_to` velocities, each evaluation
-/// eliminates a dense G. In larger systems, the factorisation of a sparse G_d is reused, and the equations of positions
-/// and velocities are solved by corrections. If a correction leaves more than a quarter of the violation, G_d is
-/// factorised again and the partition is checked.
+/// the units, because they compare metres with radians.
+/// With at most `dense_up_to` velocities, each evaluation eliminates a dense G. In larger systems, the factorisation of
+/// a sparse G_d is reused, and the equations of positions and velocities are solved by corrections. If a correction
+/// leaves more than a quarter of the violation, G_d is factorised again and the partition is checked.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
   double tolerance = 1e-12;     ///< tolerance of Φ [m], [rad], and for sparse G also of Φ̇, in addition to round-off
