@@ -66,6 +66,12 @@ inline auto const integrators = std::tuple(
     NamedIntegrator<Newmark>{"newmark", {}}, NamedIntegrator<Radau>{"radau", {}},
     NamedIntegrator<EnergyMomentum>{"energy-momentum", {}}, NamedIntegrator<RungeKutta4<Projection>>{"runge-kutta", {}},
     NamedIntegrator<AdamsBashforthMoulton<Projection>>{"adams", {}});
+// Calls f with integrator number k.
+template <class F>
+void with_integrator(std::size_t k, F const& f) {
+  std::size_t at = 0;
+  std::apply([&](auto const&... i) { ((at++ == k ? f(i.integrator) : void()), ...); }, integrators);
+}
 
 // Bodies of each file, on each policy of the joint.
 std::vector<BodyOnPolicy> rigid_bodies(Mechanism);
@@ -77,6 +83,8 @@ std::vector<BodyOnPolicy> engineering_cables(Mechanism);
 std::vector<BodyOnPolicy> floating_frames(Mechanism);
 std::vector<BodyOnPolicy> elastic_line_beams(Mechanism);
 std::vector<BodyOnPolicy> continuum_beams(Mechanism);
+// All of these bodies, on each policy.
+std::vector<BodyOnPolicy> bodies_on_policies(Mechanism);
 
 // The case and the options of the cases 'run', 'compare' and 'combinations'. Empty lists are the defaults of the case.
 struct FormulationOptions {

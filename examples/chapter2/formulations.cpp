@@ -8,27 +8,12 @@ namespace chapter2 {
 
 namespace {
 
-std::vector<BodyOnPolicy> table_of(Mechanism mechanism) {
-  std::vector<BodyOnPolicy> table;
-  for (auto const of_body : {rigid_bodies, lrvf_beams, green_cables, engineering_cables, floating_frames,
-                             spatial_rigid_bodies, elastic_line_beams, continuum_beams, spatial_lrvf_beams})
-    for (BodyOnPolicy& one : of_body(mechanism)) table.push_back(std::move(one));
-  return table;
-}
-
 std::vector<std::string> const own_cases{"run", "compare", "combinations"};
 std::vector<std::string> const all_policies{"constraint", "penalty", "bushing", "ancf-linear", "joint-coordinates"};
 std::vector<std::string> const all_bodies{"rigid",     "lrvf",        "ancf",      "ancf-engineering",    "ffr",
                                           "ffr-modal", "rigid-space", "ancf-beam", "ancf-beam-continuum", "lrvf-space"};
 std::vector<std::string> const all_integrators =
     std::apply([](auto const&... i) { return std::vector<std::string>{i.name...}; }, integrators);
-
-// Calls f with integrator number k.
-template <class F>
-void with_integrator(std::size_t k, F const& f) {
-  std::size_t at = 0;
-  std::apply([&](auto const&... i) { ((at++ == k ? f(i.integrator) : void()), ...); }, integrators);
-}
 
 // Prints cells in aligned columns: the first `left` of them to the left, the others to the right.
 using Cells = std::vector<std::string>;
@@ -52,7 +37,7 @@ void print_list(Problem const& problem) {
   rows[0].insert(rows[0].end(), all_integrators.begin(), all_integrators.end());
   std::vector<std::string> reasons;
   std::size_t exist = 0, refused = 0;
-  for (BodyOnPolicy const& one : table_of(problem.mechanism)) {
+  for (BodyOnPolicy const& one : bodies_on_policies(problem.mechanism)) {
     Cells row{one.body.name, one.policy};
     for (auto const& [why, add] : one.by) {
       auto const known = std::find(reasons.begin(), reasons.end(), why);
@@ -83,7 +68,7 @@ struct Choice {
 };
 std::vector<Choice> all_choices(Mechanism mechanism) {
   std::vector<Choice> all;
-  for (BodyOnPolicy const& one : table_of(mechanism))
+  for (BodyOnPolicy const& one : bodies_on_policies(mechanism))
     for (std::size_t k = 0; k < one.by.size(); ++k) all.push_back({one, k});
   return all;
 }
@@ -236,17 +221,6 @@ std::string FormulationOptions::body_of_figures(std::vector<std::string> const& 
   for (std::string const& name : allowed) names += (names.empty() ? "" : ", ") + name;
   throw InvalidInput{"The case \"", ErrorObject{which}, "\" has one body, --body ", names,
                      ". The cases 'run' and 'compare' accept a list of all bodies."};
-}
-
-Scenario<AnyModel> scenario_of(Problem const& problem, MakeMechanism const& make, FormulationMesh const& mesh) {
-  AnyMechanism const made = make(problem.setup, mesh);
-  auto const value = [tip = made.tip, of = problem.output_value](AnyModel const&, State const& x) {
-    return of(x.t, tip(x));
-  };
-  return {made.model,
-          made.model.reference_state(),
-          {.end_time = problem.end_time, .step = problem.end_time / 1000.0, .max_step_halvings = 6},
-          {{problem.output, value}}};
 }
 
 bool run_formulations(FormulationOptions const& o, Problem const& problem) {
