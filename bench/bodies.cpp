@@ -1,12 +1,11 @@
-// Every body formulation: nanoseconds per element for M a − f and for its tangent, the number of operations of M a −
-// f (a counting scalar counts each +, −, ×, ÷, root or sine as one) and their rate.
-#include <benchmark/benchmark.h>
-
-#include <chrono>
-#include <cstdio>
+// Every body formulation: time of the residual M a − f and of its tangent for all elements of a body. Counters: number
+// of elements (Rigid, Ffr: one), nanoseconds per element, and for the residual the number of operations per element and
+// their rate. A counting scalar counts each +, −, ×, ÷, root or sine as one operation.
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
+
+#include "registered.hpp"
 
 namespace {
 
@@ -59,18 +58,6 @@ struct Eigen::ScalarBinaryOpTraits<double, Counted, Operation> {
 namespace {
 
 using namespace polybody;
-using Clock = std::chrono::steady_clock;
-
-template <class F>
-double fastest(Index elements, F&& pass) {
-  double best = 1e300;
-  for (int i = 0; i < 300; ++i) {
-    auto const start = Clock::now();
-    pass();
-    best = std::min(best, std::chrono::duration<double, std::nano>(Clock::now() - start).count() / double(elements));
-  }
-  return best;
-}
 
 Bar bar() {
   return {.length = 4.0,
@@ -78,72 +65,92 @@ Bar bar() {
           .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3}};
 }
 
-template <class B>
-void measure(char const* name, B const& body) {
-  VecX q(body.coordinates());
-  body.reference({q.data(), std::size_t(q.size())});
-  VecX delta(body.velocities()), v(body.velocities()), a(body.velocities());
-  for (Index i = 0; i < delta.size(); ++i) {
-    delta[i] = 1e-3 * std::sin(7.0 * double(i));
-    v[i] = 0.1 * std::sin(3.0 * double(i));
-    a[i] = std::cos(5.0 * double(i));
-  }
-  VecX at(q.size());
-  auto const span = [](auto const& x) {
-    return std::span<typename std::decay_t<decltype(x)>::Scalar const>(x.data(), std::size_t(x.size()));
-  };
-  body.template plus<double>(span(q), span(delta), {at.data(), std::size_t(at.size())});
-  Index const elements = body.elements();
+template <class V>
+auto span(V const& x) {
+  return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
+}
 
+/// Deformed and moving state of a body.
+struct Motion {
+  VecX q, v, a;
+
+  template <class B>
+  explicit Motion(B const& body) : q(body.coordinates()), v(body.velocities()), a(v) {
+    VecX reference(q.size()), delta(v.size());
+    body.reference({reference.data(), std::size_t(reference.size())});
+    for (Index i = 0; i < delta.size(); ++i) {
+      delta[i] = 1e-3 * std::sin(7.0 * double(i));
+      v[i] = 0.1 * std::sin(3.0 * double(i));
+      a[i] = std::cos(5.0 * double(i));
+    }
+    body.template plus<double>(span(reference), span(delta), {q.data(), std::size_t(q.size())});
+  }
+};
+
+/// Number of operations of M a − f for one element.
+template <class B>
+double operations_of(B const& body, Motion const& at) {
+  VecXOf<Counted> const q = at.q.cast<Counted>(), v = at.v.cast<Counted>(), a = at.a.cast<Counted>();
+  ForceScratch<B, Counted> counted(body);
+  Counted::operations = 0;
+  body.template inertia<Counted>(0, span(q), span(a), counted.x);
+  body.template force<Counted>(0, span(q), span(v), counted.force);
+  return double(Counted::operations) + double(element_columns(body));
+}
+
+/// Times `pass` over all elements.
+template <class F>
+void time_passes(benchmark::State& state, Index elements, F const& pass) {
+  for (auto _ : state) pass();
+  state.counters["elements"] = double(elements);
+  registered::count_ns(state, "ns_per_element", double(elements));
+}
+
+template <class B>
+void add(std::string const& name, B const& body) {
   auto const use = [](Index, auto const& x) {  // uses all entries, so that the compiler cannot omit any
     benchmark::DoNotOptimize(x.data());
     benchmark::ClobberMemory();
   };
-  ForceScratch<B, double> force(body);
-  TangentScratch<B> tangent(body);
-  int const repeats = elements < 16 ? 64 : 1;  // because one pass is too short for the clock
-  double const ns = fastest(elements * repeats, [&] {
-    for (int i = 0; i < repeats; ++i)
-      for_each_residual<B, double>(body, {0, elements}, {span(at), span(v), span(a)}, force, use);
+  Index const elements = body.elements();
+  registered::add("residual/" + name, [=](benchmark::State& state) {
+    Motion const at(body);
+    ForceScratch<B, double> force(body);
+    time_passes(state, elements, [&] {
+      for_each_residual<B, double>(body, {0, elements}, {span(at.q), span(at.v), span(at.a)}, force, use);
+    });
+    double const operations = operations_of(body, at);
+    state.counters["operations"] = operations;
+    state.counters["operations_per_ns"] =
+        benchmark::Counter(1e-9 * operations * double(elements), benchmark::Counter::kIsIterationInvariantRate);
   });
-  double const tangent_ns = fastest(elements * repeats, [&] {
-    for (int i = 0; i < repeats; ++i)
-      for_each_element_tangent<B>(body, {0, elements}, {span(at), span(v)}, {1.5, 0.1, 1.0}, tangent, use);
+  registered::add("tangent/" + name, [=](benchmark::State& state) {
+    Motion const at(body);
+    TangentScratch<B> tangent(body);
+    time_passes(state, elements, [&] {
+      for_each_element_tangent<B>(body, {0, elements}, {span(at.q), span(at.v)}, {1.5, 0.1, 1.0}, tangent, use);
+    });
   });
-
-  VecXOf<Counted> const qc = at.cast<Counted>(), vc = v.cast<Counted>(), ac = a.cast<Counted>();
-  ForceScratch<B, Counted> counted(body);
-  Counted::operations = 0;
-  body.template inertia<Counted>(0, span(qc), span(ac), counted.x);
-  body.template force<Counted>(0, span(qc), span(vc), counted.force);
-  long const operations = Counted::operations + long(element_columns(body));
-  std::printf("  %-30s %8.1f ns, %6ld operations, %5.2f per ns;   tangent %8.1f ns, both %8.1f ns\n", name, ns,
-              operations, double(operations) / ns, tangent_ns, ns + tangent_ns);
 }
-
-void all_bodies(benchmark::State& state) {
-  for (auto _ : state) {
-    Index const n = 64;
-    std::printf("\nan element (Rigid, Ffr: the body), packs of %d where alike elements go in packs\n", simd_size);
-    measure("Rigid<>", Rigid<>::from(bar()));
-    measure("Rigid<EulerParameters>", Rigid<EulerParameters>::from(bar()));
-    measure("AncfCable<>", AncfCable<>::from(bar(), n));
-    measure("AncfBeam<ElasticLine>", AncfBeam<ElasticLine>::from(bar(), n));
-    measure("AncfBeam<Continuum<>>", AncfBeam<Continuum<>>::from(bar(), n));
-    measure("Lrvf<RelativeRotation>", Lrvf<>::from(bar(), n));
-    measure("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
-    Structure const s = structure_of(bar(), 8);
-    measure("Ffr, 6 modes", Ffr(s, fixed_interface_modes(s, 6)));
-    measure("Ffr, 6 modes, stiffening", Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}));
-    measure("Ffr, 48 nodal coordinates", Ffr(s, nodal_coordinates(s)));
-    measure("planar::Rigid", planar::Rigid::from(bar()));
-    measure("planar::AncfCable<>", planar::AncfCable<>::from(bar(), n));
-    measure("planar::Lrvf", planar::Lrvf::from(bar(), n));
-    measure("planar::Ffr, 24 nodal", planar::Ffr::from(bar(), 8));
-  }
-}
-BENCHMARK(all_bodies)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  Index const n = 64;
+  add("Rigid<>", Rigid<>::from(bar()));
+  add("Rigid<EulerParameters>", Rigid<EulerParameters>::from(bar()));
+  add("AncfCable<>", AncfCable<>::from(bar(), n));
+  add("AncfBeam<ElasticLine>", AncfBeam<ElasticLine>::from(bar(), n));
+  add("AncfBeam<Continuum<>>", AncfBeam<Continuum<>>::from(bar(), n));
+  add("Lrvf<RelativeRotation>", Lrvf<>::from(bar(), n));
+  add("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
+  Structure const s = structure_of(bar(), 8);
+  add("Ffr/modes:6", Ffr(s, fixed_interface_modes(s, 6)));
+  add("Ffr/stiffening/modes:6", Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}));
+  add("Ffr/nodal_coordinates:48", Ffr(s, nodal_coordinates(s)));
+  add("planar::Rigid", planar::Rigid::from(bar()));
+  add("planar::AncfCable<>", planar::AncfCable<>::from(bar(), n));
+  add("planar::Lrvf", planar::Lrvf::from(bar(), n));
+  add("planar::Ffr/nodal_coordinates:24", planar::Ffr::from(bar(), 8));
+  return registered::run(argc, argv);
+}

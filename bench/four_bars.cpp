@@ -37,7 +37,7 @@ void turn(benchmark::State& state, I const& integrator) {
     double const before = energy(bars.model, bars.x).total();
     try {
       RunReport const report = simulate(bars.model, bars.x, integrator, {.end_time = end_time, .step = step}).run();
-      state.counters["iterations"] = double(report.iterations) / double(report.steps);
+      state.counters["newton_iterations"] = double(report.iterations) / double(report.steps);
     } catch (Error const& e) {
       state.SkipWithError(e.what());
       break;

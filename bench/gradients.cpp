@@ -1,15 +1,16 @@
-// Cost of the derivatives of a run, as multiples of the run with the same options: chains with factors of the masses of
-// the links as parameters, and the tracked vehicle with the stiffnesses of springs on its links as parameters.
-#include <cstdio>
+// Cost of the derivatives of a run: chains with factors of the masses of the links as parameters, 2 s in 2000 steps,
+// and the tracked vehicle with the stiffnesses of springs on its links as parameters, 0.2 s in 200 steps. The tolerance
+// is 1e-12. Benchmarks: the run itself, `sensitivities` (direct) and `gradient` (adjoint), also with 50 snapshots.
+// Counters: time as a multiple of the run, difference between direct and adjoint derivatives, relative to their norm,
+// and number and memory of the snapshots. `bench/table --linear` prints the fixed cost and the cost per parameter.
 #include <ctime>
-
-#include <benchmark/benchmark.h>
 
 #include <polybody/gradients/gradient.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/polybody.hpp>
 
 #include "m113/vehicle.hpp"
+#include "registered.hpp"
 
 namespace {
 
@@ -95,66 +96,72 @@ double least(F&& f) {
   return best;
 }
 
-/// Prints a row of the table: cost of the derivatives of the run of the scenario `make(p)`, with respect to one
-/// parameter and to `all` parameters.
-template <class Make, class I>
-void print(char const* name, int links, Make const& make, std::vector<Parameter> const& all, I const& integrator) {
-  auto const of = [&](std::size_t count) {
-    return std::vector<Parameter>(all.begin(), all.begin() + std::ptrdiff_t(count));
-  };
-  auto const scenario = make(std::span<double const>());
-  double const run = least([&] {
-    State x = scenario.start;
-    simulate(scenario.model, x, integrator, scenario.options).run();
-  });
-  std::size_t const counts[2] = {1, all.size()};
-  double direct[2], adjoint[2];
-  VecX by_direct, by_adjoint;
-  for (int k = 0; k < 2; ++k) {
-    auto const parameters = of(counts[k]);
-    direct[k] =
-        least([&] { by_direct = sensitivities(make, parameters, integrator).derivatives.back().row(0).transpose(); });
-    adjoint[k] = least([&] { by_adjoint = gradient(make, parameters, integrator).derivatives; });
-  }
-  GradientResult few;
-  double const with_few = least([&] { few = gradient(make, of(1), integrator, {.snapshots = 50}); });
-  auto const each = [&](double const* t) { return (t[1] - t[0]) / double(counts[1] - counts[0]); };
-  std::printf("| %s | %d | %zu | %.0f | %.2f | %.2f | %.2f | %.3f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links,
-              all.size(), 1e3 * run, (direct[0] - each(direct)) / run, each(direct) / run,
-              (adjoint[0] - each(adjoint)) / run, each(adjoint) / run, (with_few - each(adjoint)) / run,
-              few.reversal.taken, 1e-6 * few.snapshot_size * double(few.reversal.snapshots),
-              (by_direct - by_adjoint).norm() / by_direct.norm());
-  std::fflush(stdout);
-}
-
 std::vector<Parameter> parameters(int count, std::string const& what, std::string const& touched) {
   std::vector<Parameter> all;
   for (int i = 0; i < count; ++i)
     all.push_back({what + " " + std::to_string(i) + " [1]", 1.0, 0.0, {touched + " " + std::to_string(i)}});
   return all;
 }
+
+/// Registers the run of the scenario `make(p)` and its derivatives, with respect to one parameter and to `all`.
+template <class Make>
+void add(std::string const& name, Make const& make, std::vector<Parameter> const& all,
+         GeneralisedAlpha const& integrator) {
+  auto const run_once = [=](auto const& scenario) {
+    State x = scenario.start;
+    simulate(scenario.model, x, integrator, scenario.options).run();
+  };
+  registered::add("run/" + name, [=](benchmark::State& state) {
+    auto const scenario = make(std::span<double const>());
+    ProblemSize const size = problem_size(scenario.model);
+    State x;
+    registered::time_runs(state, size.velocities + size.rows, [&] {
+      x = scenario.start;
+      return simulate(scenario.model, x, integrator, scenario.options);
+    });
+  });
+  auto const multiples = [=](benchmark::State& state) {  // the unit is the time of the run instead of 1 ns
+    auto const scenario = make(std::span<double const>());
+    registered::count_ns(state, "runs", 1e9 * least([&] { run_once(scenario); }));
+  };
+  for (std::size_t const count : {std::size_t(1), all.size()}) {
+    std::vector<Parameter> const some(all.begin(), all.begin() + std::ptrdiff_t(count));
+    std::string const of = name + "/parameters:" + std::to_string(count);
+    registered::add("sensitivities/" + of, [=](benchmark::State& state) {
+      for (auto _ : state) benchmark::DoNotOptimize(sensitivities(make, some, integrator));
+      multiples(state);
+    });
+    for (std::size_t const snapshots : {0u, 50u}) {
+      if (snapshots > 0 && count > 1) continue;
+      registered::add("gradient/" + of + (snapshots > 0 ? "/snapshots:50" : ""), [=](benchmark::State& state) {
+        GradientResult adjoint;
+        for (auto _ : state) adjoint = gradient(make, some, integrator, {.snapshots = snapshots});
+        multiples(state);
+        VecX const direct = sensitivities(make, some, integrator).derivatives.back().row(0).transpose();
+        state.counters["error"] = (adjoint.derivatives - direct).norm() / direct.norm();
+        state.counters["computed_steps"] = double(adjoint.reversal.taken);
+        state.counters["megabytes"] = 1e-6 * double(adjoint.snapshot_size) * double(adjoint.reversal.snapshots);
+      });
+    }
+  }
+}
 template <class B>
-void print_chain(char const* name, int links, double turn = 0.0) {
-  print(name, links, Chain<B>{links, 2.0, turn}, parameters(std::min(links, 33), "mass of link", "link"),
-        GeneralisedAlpha{.tolerance = 1e-12});
+void add_chain(std::string const& name, int links, double turn = 0.0) {
+  add(name + "/links:" + std::to_string(links), Chain<B>{links, 2.0, turn},
+      parameters(std::min(links, 33), "mass of link", "link"), GeneralisedAlpha{.tolerance = 1e-12});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  std::printf(
-      "chains: 2 s in 2000 steps, from rest in a plane or turning at 2 rad/s; vehicle: 0.2 s in 200; tolerance 1e-12; "
-      "cost in runs\n\n| | links | parameters | run "
-      "[ms] | direct | and a parameter | adjoint | and a parameter | adjoint with 50 snapshots | apart "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
-  print_chain<Rigid<>>("rigid", 16);
-  print_chain<Rigid<>>("rigid", 64);
-  print_chain<AncfCable<>>("`AncfCable`", 16);
-  print_chain<AncfCable<>>("`AncfCable`", 64);
-  print_chain<Rigid<>>("rigid, turning", 16, 2.0);
-  print_chain<Rigid<>>("rigid, turning", 64, 2.0);
-  print_chain<AncfCable<>>("`AncfCable`, turning", 64, 2.0);
-  print("vehicle", 128, Vehicle{0.2}, parameters(100, "stiffness of spring", "spring"),
-        GeneralisedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
+  add_chain<Rigid<>>("Rigid", 16);
+  add_chain<Rigid<>>("Rigid", 64);
+  add_chain<AncfCable<>>("AncfCable", 16);
+  add_chain<AncfCable<>>("AncfCable", 64);
+  add_chain<Rigid<>>("Rigid_turning", 16, 2.0);
+  add_chain<Rigid<>>("Rigid_turning", 64, 2.0);
+  add_chain<AncfCable<>>("AncfCable_turning", 64, 2.0);
+  add("vehicle", Vehicle{0.2}, parameters(100, "stiffness of spring", "spring"),
+      GeneralisedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
+  return registered::run(argc, argv);
 }

@@ -1,15 +1,12 @@
 // Cost of a joint under each policy, on chains on pins that fall from a horizontal start. The links have a length of
-// 0.1 m; they are rigid in space, or one cable element each in the plane.
-// Growth: time of a step of h = 1 ms with 16 to 1024 links, at the actual and at equal counts of iterations, and
-// exponents of growth from 64 links on. joints.png shows both times. Parts: nanoseconds per link for residual, tangent,
-// factorisation and solution, also compared with links without joints. All times are processor times, the fastest of
-// several runs.
-#include <benchmark/benchmark.h>
-
-#include <cstdio>
-#include <ctime>
-#include <polybody/io/plot.hpp>
+// 0.1 m; they are rigid in space, or one cable element each in the plane. Benchmarks:
+// - step: 0.1 s in steps of 1 ms, with 16 to 1024 links;
+// - residual, tangent, factorisation (with its tangent) and solution: in the state after 0.1 s. The counter is the time
+//   per link, also for links without joints ("free").
+// `bench/table --growth` prints the exponents of growth.
 #include <polybody/polybody.hpp>
+
+#include "registered.hpp"
 
 namespace {
 
@@ -59,21 +56,6 @@ Chain<B, G, Ps...> chain(Chain<B, G, Ps...> const&, P const& policy, int links, 
   return model;
 }
 
-/// Processor time of this program [s].
-double now() { return double(std::clock()) / CLOCKS_PER_SEC; }
-
-/// Processor time of the fastest of `tries` calls [s].
-template <class F>
-double fastest(int tries, F&& pass) {
-  double best = 1e300;
-  for (int i = 0; i < tries; ++i) {
-    double const start = now();
-    pass();
-    best = std::min(best, now() - start);
-  }
-  return best;
-}
-
 /// Sink that copies the blocks of a tangent without further use.
 struct Taken {
   std::vector<double> block;
@@ -85,141 +67,93 @@ struct Taken {
   }
 };
 
-struct Cost {
-  double residual, tangent, factor, solve;  ///< times in the state after 0.1 s, `factor` with its tangent [ns per link]
-  double step, iterations, factorisations;  ///< means over the first 0.1 s: time [µs] and counts of a step
-};
+RunOptions const options{.end_time = 0.1, .step = 1e-3};
 
+/// Parts of an iteration in the state after 0.1 s.
 template <class M>
-Cost cost(M const& model, int links) {
-  Cost out{};
-  State x = model.reference_state();
-  for (int i = 0; i < 5 + 512 / links; ++i) {
-    x = model.reference_state();
-    auto run = simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3});
-    double const us = fastest(1, [&] { run.run(); }) * 1e6, steps = double(run.report().steps);
-    if (i == 0 || us / steps < out.step) out.step = us / steps;
-    out.iterations = double(run.report().iterations) / steps;
-    out.factorisations = double(run.report().factorisations) / steps;
-  }
-
+struct Parts {
+  M model;
   System system = stepped_system(model);
-  State y = reduce(system, x);
-  TangentCoefficients const c{1.5, 5e-4, 2.5e-7};
-  TangentSolver<DefaultSolver> solver;
-  auto const write = [&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, y.lambda, sink); };
-  system.evaluate(y.q, y.v, y.t);
-  solver.analyse(system, 1, write);
-  VecX r = VecX::Zero(system.velocities()), rhs = VecX::Ones(system.size()), solution = rhs;
-  Taken taken;
-  int const passes = std::max(1, 2048 / links);
-  auto const ns = [&](auto&& pass) {
-    return fastest(50,
-                   [&] {
-                     for (int k = 0; k < passes; ++k) pass();
-                   }) *
-           1e9 / (passes * links);
-  };
-  out.residual = ns([&] {
-    system.evaluate(y.q, y.v, y.t);
-    system.residual(y.a, y.lambda, r);
-  });
-  out.tangent = ns([&] { system.tangent(c, SecondOrder::omitted, y.lambda, taken); });
-  out.factor = ns([&] { benchmark::DoNotOptimize(solver.factor(write)); });
-  out.solve = ns([&] { solver.solve(rhs, solution); });
-  return out;
-}
+  State x;
+  TangentSolver<DefaultSolver> solver = {};
+  VecX r = VecX::Zero(system.velocities()), rhs = VecX::Ones(system.size()), y = rhs;
+  Taken taken = {};
 
-/// Slope of log y over log x for x ≥ 64, by least squares.
-double slope(Curve const& curve) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    if (curve.x[i] < 64) continue;
-    double const x = std::log(curve.x[i]), y = std::log(curve.y[i]);
-    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  explicit Parts(M const& of) : model(of) {
+    State full = model.reference_state();
+    simulate(model, full, GeneralisedAlpha{}, options).run();
+    x = reduce(system, full);
+    system.evaluate(x.q, x.v, x.t);
+    solver.analyse(system, 1, [this](BlockSink& sink) { write(sink); });
+    factorisation();
   }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
-struct Tables {
-  std::string parts;
-  std::vector<Figure> panels = {panel("A step of a falling chain on pins, as taken"),
-                                panel("The same at equal counts: 3 iterations, 0.2 factorisations")};
-
-  static Figure panel(char const* title) {
-    return {.title = title,
-            .x_label = "links",
-            .y_label = "µs a step",
-            .log_x = true,
-            .log_y = true,
-            .x_range = std::array{10.0, 2000.0}};
+  template <class Sink>
+  void write(Sink& sink) {
+    system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, sink);
   }
+  void residual() {
+    system.evaluate(x.q, x.v, x.t);
+    system.residual(x.a, x.lambda, r);
+  }
+  void tangent() { write(taken); }
+  void factorisation() {
+    benchmark::DoNotOptimize(solver.factor([this](BlockSink& sink) { write(sink); }));
+  }
+  void solution() { solver.solve(rhs, y); }
 };
 
-/// Measures one policy for up to `most` links. `free` is the cost of links without joints.
-template <class M, class P>
-void measure(char const* name, M const& like, P const& policy, Cost const& free, Tables& out, int most = 1024) {
-  Curve taken{.label = name, .style = "linespoints"}, equal = taken;
-  std::printf("  %-36s", name);
-  for (int links = 16; links <= most; links *= 2) {
-    Cost const c = cost(chain(like, policy, links), links);
-    std::printf(" %7.1f (%3.1f, %4.2f)", c.step, c.iterations, c.factorisations);
-    std::fflush(stdout);
-    for (Curve* curve : {&taken, &equal}) curve->x.push_back(links);
-    taken.y.push_back(c.step);
-    equal.y.push_back((3.0 * (c.residual + c.solve) + 0.2 * c.factor) * 1e-3 * links);
-    if (links == 64) {
-      char row[200];
-      std::snprintf(row, sizeof row, "  %-36s %9.0f %9.0f %9.0f %9.0f      %9.0f %9.0f\n", name, c.residual, c.tangent,
-                    c.factor, c.solve, c.residual - free.residual, c.tangent - free.tangent);
-      out.parts += row;
-    }
-  }
-  if (most > 64) std::printf("   slopes %.2f, %.2f", slope(taken), slope(equal));
-  std::printf("\n");
-  if (most == 64) return;
-  out.panels[0].curves.push_back(std::move(taken));
-  out.panels[1].curves.push_back(std::move(equal));
+/// Registers the parts of an iteration of a chain that `make(links)` returns.
+template <class F>
+void add_parts(std::string const& name, int links, F const& make) {
+  using P = Parts<decltype(make(links))>;
+  auto const add = [&](char const* part, void (P::*act)()) {
+    registered::add(part + name, [=](benchmark::State& state) {
+      P parts(make(links));
+      for (auto _ : state) (parts.*act)();
+      registered::count_ns(state, "ns_per_link", links);
+    });
+  };
+  add("residual/", &P::residual);
+  add("tangent/", &P::tangent);
+  add("factorisation/", &P::factorisation);
+  add("solution/", &P::solution);
 }
 
-void all_joints(benchmark::State& state) {
-  for (auto _ : state) {
-    using Kept = Cables<Constraint, Penalty>;
-    using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
-    Cost const rod = cost(chain(Rods{}, Constraint{}, 64, false), 64),
-               cable = cost(chain(Kept{}, Constraint{}, 64, false), 64);
-    Tables tables;
-    std::printf(
-        "\nmicroseconds a step (iterations, factorisations); slopes from 64 links on, as taken and at equal counts\n  "
-        "%-36s",
-        "links");
-    for (int links = 16; links <= 1024; links *= 2) std::printf(" %7d            ", links);
-    std::printf("\n");
-    measure("rigid, Constraint", Rods{}, Constraint{}, rod, tables);
-    measure("rigid, Penalty", Rods{}, penalty, rod, tables);
-    measure("rigid, PenaltyPerEquation", Rods{}, per_row, rod, tables, 64);
-    measure("rigid, Bushing", Rods{}, bushing, rod, tables);
-    measure("rigid, NonlinearBushing", Rods{}, laws, rod, tables, 64);
-    measure("rigid, JointCoordinates", Chain<Rigid<>, Revolute, JointCoordinates>{}, JointCoordinates{}, rod, tables);
-    measure("rigid, JointCoordinatesBy<ArticulatedBody>", Chain<Rigid<>, Revolute, ByBodies>{}, ByBodies{}, rod,
-            tables);
-    measure("cables, Constraint", Kept{}, Constraint{}, cable, tables);
-    measure("cables, Penalty", Kept{}, penalty, cable, tables, 64);
-    measure("cables, AncfLinear", Cables<AncfLinear>{}, AncfLinear{}, cable, tables);
-    std::printf(
-        "\nnanoseconds a link                      residual   tangent, and factored  solution   beside free links: "
-        "residual, tangent\n");
-    for (auto const& [name, c] : {std::pair("rigid, free", rod), {"cables, free", cable}})
-      std::printf("  %-36s %9.0f %9.0f %9.0f %9.0f\n", name, c.residual, c.tangent, c.factor, c.solve);
-    std::printf("%s", tables.parts.c_str());
-    for (Figure& f : tables.panels) {
-      f.curves.push_back({.x = {16, 1024}, .y = {4, 256}, .label = "slope 1", .style = "dashed", .colour = 6});
-    }
-    write_panels(tables.panels, 2, "joints");
+/// Registers the chains of one policy with up to `most` links.
+template <class M, class P>
+void add(std::string const& name, M const&, P const& policy, int most = 1024) {
+  auto const make = [policy](int links) { return chain(M{}, policy, links); };
+  for (int links = 16; links <= most; links *= 2) {
+    std::string const size = name + "/links:" + std::to_string(links);
+    registered::add("step/" + size, [=](benchmark::State& state) {
+      auto const model = make(links);
+      ProblemSize const counts = problem_size(model);
+      State x;
+      registered::time_runs(state, counts.velocities + counts.rows, [&] {
+        x = model.reference_state();
+        return simulate(model, x, GeneralisedAlpha{}, options);
+      });
+    });
+    add_parts(size, links, make);
   }
 }
-BENCHMARK(all_joints)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  using Kept = Cables<Constraint, Penalty>;
+  using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
+  add_parts("rigid/free/links:64", 64, [](int links) { return chain(Rods{}, Constraint{}, links, false); });
+  add_parts("cables/free/links:64", 64, [](int links) { return chain(Kept{}, Constraint{}, links, false); });
+  add("rigid/Constraint", Rods{}, Constraint{});
+  add("rigid/Penalty", Rods{}, penalty);
+  add("rigid/PenaltyPerEquation", Rods{}, per_row, 64);
+  add("rigid/Bushing", Rods{}, bushing);
+  add("rigid/NonlinearBushing", Rods{}, laws, 64);
+  add("rigid/JointCoordinates", Chain<Rigid<>, Revolute, JointCoordinates>{}, JointCoordinates{});
+  add("rigid/JointCoordinatesBy<ArticulatedBody>", Chain<Rigid<>, Revolute, ByBodies>{}, ByBodies{});
+  add("cables/Constraint", Kept{}, Constraint{});
+  add("cables/Penalty", Kept{}, penalty, 64);
+  add("cables/AncfLinear", Cables<AncfLinear>{}, AncfLinear{});
+  return registered::run(argc, argv);
+}

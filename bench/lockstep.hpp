@@ -1,8 +1,9 @@
 // Cost of stepping variants of a model in the lanes of one SIMD vector: the iterations of the slowest variant, and a
 // factorisation if any variant needs one. The ratio of this cost to the cost of single runs is a bound of the gain.
 #pragma once
+#include <benchmark/benchmark.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <polybody/math/simd_vector.hpp>
 #include <string>
 #include <vector>
@@ -29,9 +30,10 @@ Counts counts_of(Run& run) {
   return out;
 }
 
-/// Prints the cost of `runs` in lanes compared with single runs.
-/// \param iteration, factorisation time of one iteration and of one factorisation [µs]
-inline void print(std::string const& what, std::vector<Counts> const& runs, double iteration, double factorisation) {
+/// Sets counters of the cost of `runs` in 4 and in 8 lanes compared with single runs, per step: iterations and
+/// factorisations of single runs and in lockstep, ratio of the work, and the largest possible gain.
+/// \param iteration, factorisation time of one iteration and of one factorisation
+inline void count(benchmark::State& state, std::vector<Counts> const& runs, double iteration, double factorisation) {
   std::size_t steps = runs.front().iterations.size();
   for (Counts const& run : runs) steps = std::min(steps, run.iterations.size());
   for (std::size_t const lanes : {4u, 8u}) {
@@ -49,17 +51,16 @@ inline void print(std::string const& what, std::vector<Counts> const& runs, doub
     }
     double const n = double(steps), alone = mean_iterations * iteration + mean_factorisations * factorisation,
                  together = most_iterations * iteration + any_factorisation * factorisation;
-    std::printf("| %s | %zu | %.2f, %.2f | %.2f, %.2f | %.2f | %.1f |\n", what.c_str(), lanes, mean_iterations / n,
-                mean_factorisations / n, most_iterations / n, any_factorisation / n, together / alone,
-                double(std::min<std::size_t>(lanes, polybody::simd_size)) * alone / together);
+    auto const set = [&](char const* what, double value) {
+      state.counters[what + (" in " + std::to_string(lanes))] = value;
+    };
+    set("iterations", mean_iterations / n);
+    set("factorisations", mean_factorisations / n);
+    set("lockstep iterations", most_iterations / n);
+    set("lockstep factorisations", any_factorisation / n);
+    set("work", together / alone);
+    set("gain", double(std::min<std::size_t>(lanes, polybody::simd_size)) * alone / together);
   }
-}
-
-inline void print_head() {
-  std::printf(
-      "\n| variants that differ by | lanes | iterations, factorisations a step | in lockstep | work | gain at most, "
-      "packs of %d |\n|---|---|---|---|---|---|\n",
-      polybody::simd_size);
 }
 
 }  // namespace lockstep

@@ -1,16 +1,18 @@
 // One step of h = 1 ms: chains of rigid links (0.1 m, 1 kg, I = (1e-4, 1e-3, 1e-3) kg m²) released horizontally, 1 s,
 // with ideal and compliant pins; the robot arm of Chapter 2; N four-bars (IFToMM A02); a very flexible cable pendulum.
-// Each model is solved with the default solver and with Eigen's sparse LU. The program also measures the parts of a
-// step, and the possible gain of variants of a chain in the lanes of SIMD vectors.
-#include <benchmark/benchmark.h>
-
-#include <chrono>
+// Benchmarks:
+// - step: the run of a model with the default solver and with Eigen's sparse LU;
+// - part: parts of an iteration for a chain of 64 links;
+// - variants: eight chains of 64 links with random differences of the masses of their links. The counters give the
+//   possible gain of SIMD lanes.
+// bench_steps --run MODEL SIZE SECONDS completes one run for a profiler.
 #include <cstdio>
 #include <polybody/polybody.hpp>
 #include <random>
 
 #include "../examples/chapter2.hpp"
 #include "lockstep.hpp"
+#include "registered.hpp"
 #include "timing.hpp"
 
 namespace {
@@ -57,56 +59,42 @@ struct CablePendulum {
   }
 };
 
-struct Cost {
-  double microseconds = 0.0;                      ///< time of a step
-  double iterations = 0.0, factorisations = 0.0;  ///< counts per step
+/// A mechanism with its start and the end of its run [s].
+template <class T>
+struct Started {
+  std::shared_ptr<T const> made;
+  State start;
+  double end_time;
 };
-
-template <class Solver, class M>
-Cost cost(M const& model, State x, double end_time) {
-  auto run = simulate<Solver>(model, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 1e-3});
-  auto const start = std::chrono::steady_clock::now();
-  run.run();
-  double const time = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-  RunReport const& r = run.report();
-  return {time / double(r.steps), double(r.iterations) / double(r.steps), double(r.factorisations) / double(r.steps)};
+template <class T>
+Started<T> from_reference(T const& mechanism, double end_time = 1.0) {
+  auto const made = std::make_shared<T const>(mechanism);
+  return {made, made->model.reference_state(), end_time};
 }
 
-void chains() {
-  std::printf("\nmicroseconds a step (Newton iterations, factorisations a step)\n");
-  std::printf("  links   constraint, block solver      constraint, Eigen SparseLU   penalty 1e7 N/m, block solver\n");
-  for (int const links : {4, 16, 64, 256, 1024}) {
-    double const end_time = links > 64 ? 0.2 : 1.0;
-    Chain<Constraint> const ideal(links, {});
-    Chain<Penalty> const compliant(links, {.stiffness = 1e7, .damping = 1e3});
-    Cost const block = cost<BlockSolver>(ideal.model, ideal.model.reference_state(), end_time),
-               lu = cost<EigenSparseLu>(ideal.model, ideal.model.reference_state(), end_time),
-               soft = cost<BlockSolver>(compliant.model, compliant.model.reference_state(), end_time);
-    std::printf("  %5d", links);
-    for (Cost const& c : {block, lu, soft})
-      std::printf(" %9.1f (%5.2f, %5.3f)      ", c.microseconds, c.iterations, c.factorisations);
-    std::printf("  ratio SparseLU / block %.1f\n", lu.microseconds / block.microseconds);
-  }
+template <class Solver, class T>
+void time_steps(benchmark::State& state, Started<T> const& of) {
+  ProblemSize const size = problem_size(of.made->model);
+  State x;
+  registered::time_runs(state, size.velocities + size.rows, [&] {
+    x = of.start;
+    return simulate<Solver>(of.made->model, x, GeneralisedAlpha{}, {.end_time = of.end_time, .step = 1e-3});
+  });
 }
 
-/// Prints a row of the table: times of the default solver and of Eigen's sparse LU, and their ratio.
-template <class M>
-void compare_solvers(std::string const& what, M const& model, State const& x, double end_time) {
-  Cost const block = cost<BlockSolver>(model, x, end_time), lu = cost<EigenSparseLu>(model, x, end_time);
-  std::printf("  %-34s %8.1f (%5.2f, %5.3f)   %8.1f   ratio %.1f\n", what.c_str(), block.microseconds, block.iterations,
-              block.factorisations, lu.microseconds, lu.microseconds / block.microseconds);
+/// Registers runs of the mechanism that `start()` returns.
+template <class F>
+void add(std::string const& name, F const& start) {
+  registered::add("step/" + name + "/BlockSolver",
+                  [=](benchmark::State& state) { time_steps<BlockSolver>(state, start()); });
+  registered::add("step/" + name + "/EigenSparseLu",
+                  [=](benchmark::State& state) { time_steps<EigenSparseLu>(state, start()); });
 }
 
 template <class B, class P = Constraint>
 chapter2::RobotArm<B, P> arm(Index elements, P const& policy = {}) {
   return {chapter2::bar(chapter2::medium, 1.2), elements, 15.0, 0.0, policy};
 }
-template <class B, class P>
-void compare_solvers_of_arm(std::string const& what, Index elements, P const& policy) {
-  auto const robot = arm<B>(elements, policy);
-  compare_solvers("robot arm, " + what, robot.model, robot.model.reference_state(), 1.0);
-}
-
 /// Linkage of N windows of unit bars on pins (R2 of docs/cases.md), upright, moving to the right at 1 m/s.
 struct FourBars {
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -139,24 +127,37 @@ struct FourBars {
   }
 };
 
-void mechanisms() {
-  std::printf("\nmicroseconds a step (iterations, factorisations), Eigen SparseLU, ratio\n");
+template <class B, class P>
+void add_arm(std::string const& body, Index elements, P const& policy) {
+  std::string const mesh = elements > 1 ? "/elements:" + std::to_string(elements) : "";
+  add("robot_arm/" + body + '/' + P::name + mesh, [=] { return from_reference(arm<B>(elements, policy)); });
+}
+
+void add_mechanisms() {
+  for (int const links : {4, 16, 64, 256, 1024}) {
+    std::string const size = "/links:" + std::to_string(links);
+    double const end_time = links > 64 ? 0.2 : 1.0;
+    add("chain/Constraint" + size, [=] { return from_reference(Chain<Constraint>(links, {}), end_time); });
+    add("chain/Penalty" + size,
+        [=] { return from_reference(Chain<Penalty>(links, {.stiffness = 1e7, .damping = 1e3}), end_time); });
+  }
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
-  compare_solvers_of_arm<planar::Rigid>("rigid, Constraint", 1, Constraint{});
-  compare_solvers_of_arm<planar::Rigid>("rigid, Penalty", 1, stiff);
-  compare_solvers_of_arm<planar::Lrvf>("10 Lrvf, Constraint", 10, Constraint{});
-  compare_solvers_of_arm<planar::Lrvf>("10 Lrvf, Penalty", 10, stiff);
-  compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Constraint", 10, Constraint{});
-  compare_solvers_of_arm<planar::AncfCable<>>("10 AncfCable, Penalty", 10, stiff);
-  for (Index const n : {16, 64}) {
-    CablePendulum const pendulum(n);
-    compare_solvers("cable pendulum, " + std::to_string(n) + " elements", pendulum.model, pendulum.start, 1.0);
-  }
-  for (int const n : {2, 10, 40}) {
-    FourBars const bars(n);
-    compare_solvers(std::to_string(n) + " four-bars", bars.model, bars.start(),
-                    0.7);  // the first flat position comes at 0.71 s
-  }
+  add_arm<planar::Rigid>("Rigid", 1, Constraint{});
+  add_arm<planar::Rigid>("Rigid", 1, stiff);
+  add_arm<planar::Lrvf>("Lrvf", 10, Constraint{});
+  add_arm<planar::Lrvf>("Lrvf", 10, stiff);
+  add_arm<planar::AncfCable<>>("AncfCable", 10, Constraint{});
+  add_arm<planar::AncfCable<>>("AncfCable", 10, stiff);
+  for (Index const n : {16, 64})
+    add("cable_pendulum/elements:" + std::to_string(n), [=] {
+      auto const made = std::make_shared<CablePendulum const>(n);
+      return Started<CablePendulum>{made, made->start, 1.0};
+    });
+  for (int const n : {2, 10, 40})
+    add("four_bars/N:" + std::to_string(n), [=] {
+      auto const made = std::make_shared<FourBars const>(n);
+      return Started<FourBars>{made, made->start(), 0.7};  // the first flat position comes at 0.71 s
+    });
 }
 
 /// Parts of an iteration for a chain of 64 links.
@@ -181,42 +182,26 @@ struct Parts {
     system.tangent({1.5, 5e-4, 2.5e-7}, SecondOrder::omitted, x.lambda, solver);
   }
 };
-Parts& parts() {
-  static Parts p;
-  return p;
+void add_part(std::string const& name, void (*act)(Parts&)) {
+  registered::add("part/" + name, [=](benchmark::State& state) {
+    Parts p;
+    for (auto _ : state) act(p);
+  });
 }
-void evaluate(benchmark::State& state) {
-  Parts& p = parts();
-  for (auto _ : state) p.system.evaluate(p.x.q, p.x.v, 0.0);
-}
-void residual(benchmark::State& state) {
-  Parts& p = parts();
-  for (auto _ : state) p.system.residual(p.x.a, p.x.lambda, p.r);
-}
-void assemble(benchmark::State& state) {
-  Parts& p = parts();
-  for (auto _ : state) p.assemble();
-}
-void assemble_and_factor(benchmark::State& state) {
-  Parts& p = parts();
-  for (auto _ : state) {
+void add_parts() {
+  add_part("evaluate", [](Parts& p) { p.system.evaluate(p.x.q, p.x.v, 0.0); });
+  add_part("residual", [](Parts& p) { p.system.residual(p.x.a, p.x.lambda, p.r); });
+  add_part("assemble", [](Parts& p) { p.assemble(); });
+  add_part("assemble_and_factor", [](Parts& p) {
     p.assemble();
     benchmark::DoNotOptimize(p.solver.factor());
-  }
+  });
+  add_part("solve", [](Parts& p) { p.solver.solve(p.rhs, p.y); });
 }
-void solve(benchmark::State& state) {
-  Parts& p = parts();
-  for (auto _ : state) p.solver.solve(p.rhs, p.y);
-}
-BENCHMARK(evaluate);
-BENCHMARK(residual);
-BENCHMARK(assemble);
-BENCHMARK(assemble_and_factor);
-BENCHMARK(solve);
 
-/// Measures eight chains of 64 links with random differences of the masses of their links.
-void variants() {
-  Parts& p = parts();
+/// Runs eight chains of 64 links whose masses differ by at most the relative part `by`.
+void variants(benchmark::State& state, double by) {
+  Parts p;
   auto const nothing = [] {};
   std::vector<double> const us = timing::fastest({{nothing, [&] { p.system.evaluate(p.x.q, p.x.v, 0.0); }},
                                                   {nothing, [&] { p.system.residual(p.x.a, p.x.lambda, p.r); }},
@@ -227,8 +212,7 @@ void variants() {
                                                      benchmark::DoNotOptimize(p.solver.factor());
                                                    }}},
                                                  101);
-  lockstep::print_head();
-  for (double const by : {1e-4, 1e-2, 1e-1}) {
+  for (auto _ : state) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> within(-by, by);
     std::vector<lockstep::Counts> runs;
@@ -238,24 +222,22 @@ void variants() {
       auto run = simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3});
       runs.push_back(lockstep::counts_of(run));
     }
-    char name[40];
-    std::snprintf(name, sizeof name, "masses of links, ±%g %%", 100.0 * by);
-    lockstep::print(name, runs, us[0] + us[1] + us[2], us[3]);
+    lockstep::count(state, runs, us[0] + us[1] + us[2], us[3]);
   }
 }
 
 /// One run with the default solver only, for a profiler: bench_steps --run MODEL SIZE SECONDS.
 int run_alone(std::string const& model, int size, double end_time) {
-  auto const run = [&](auto const& m, State const& x) {
-    Cost const c = cost<BlockSolver>(m, x, end_time);
-    std::printf("%.0f steps, %.3f Newton iterations a step\n", end_time / 1e-3, c.iterations);
+  auto const run = [&](auto const& m, State x) {
+    RunReport const r = simulate<BlockSolver>(m, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 1e-3}).run();
+    std::printf("%ld steps, %.3f Newton iterations a step\n", r.steps, double(r.iterations) / double(r.steps));
     return 0;
   };
-  auto const from_reference = [&](auto const& m) { return run(m, m.reference_state()); };
-  if (model == "chain") return from_reference(Chain<Constraint>(size, {}).model);
-  if (model == "penalty-chain") return from_reference(Chain<Penalty>(size, {.stiffness = 1e7, .damping = 1e3}).model);
-  if (model == "lrvf-arm") return from_reference(arm<planar::Lrvf>(size).model);
-  if (model == "cable-arm") return from_reference(arm<planar::AncfCable<>>(size).model);
+  auto const at_rest = [&](auto const& m) { return run(m, m.reference_state()); };
+  if (model == "chain") return at_rest(Chain<Constraint>(size, {}).model);
+  if (model == "penalty-chain") return at_rest(Chain<Penalty>(size, {.stiffness = 1e7, .damping = 1e3}).model);
+  if (model == "lrvf-arm") return at_rest(arm<planar::Lrvf>(size).model);
+  if (model == "cable-arm") return at_rest(arm<planar::AncfCable<>>(size).model);
   if (model == "cable-pendulum") {
     CablePendulum const pendulum(size);
     return run(pendulum.model, pendulum.start);
@@ -272,9 +254,11 @@ int run_alone(std::string const& model, int size, double end_time) {
 
 int main(int argc, char** argv) {
   if (argc == 5 && std::string(argv[1]) == "--run") return run_alone(argv[2], std::stoi(argv[3]), std::stod(argv[4]));
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-  chains();
-  mechanisms();
-  variants();
+  add_mechanisms();
+  add_parts();
+  for (auto const& [name, by] : {std::pair("1e-4", 1e-4), {"1e-2", 1e-2}, {"1e-1", 1e-1}})
+    registered::add(std::string("variants/masses:") + name, [by = by](benchmark::State& state) {
+      variants(state, by);
+    })->Iterations(1);
+  return registered::run(argc, argv);
 }

@@ -1,18 +1,19 @@
-// Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4): processor time per
-// second of driving, mean, 99.9 % quantile and maximum of a step, counts of Newton's method, and the time of each part
-// of a step with the flop limit of its factorisation. Options: bench_vehicle [--body X] [--policy Y] [--until S]
-// [--speed W]. With --causes 1: iterations and factorisations of steps by the number of contacts that begin or end.
-// With --variants 1: possible gain of eight vehicles in the lanes of SIMD vectors, with speeds that differ by up to one
-// percent.
+// Cost of a step of the tracked vehicle with every combination of links and pins (Chapters 3 and 4), from a standstill.
+// Names end with the options --body and --policy of track_stress, such as step/Rigid/Constraint. Options: [--until S]
+// [--speed W]. Benchmarks:
+// - step: run in steps of 1 ms. Counters: mean, 99.9 % quantile and maximum of a step, time of each part of a step,
+//   flop limit of its factorisation [µs], and share of these parts in a step [%].
+// - causes: the same run. Counters: share of the steps [%] in which so many contacts begin or end, and iterations and
+//   factorisations of these steps.
+// - variants: eight runs with speeds that differ by up to one percent. Counters: possible gain of SIMD lanes.
 #include <ctime>
-
-#include <cstdio>
-#include <cstring>
+#include <numeric>
 
 #include <polybody/integrators/step_tangent.hpp>
 
 #include "../examples/vehicle_links/links.hpp"
 #include "lockstep.hpp"
+#include "registered.hpp"
 #include "timing.hpp"
 
 namespace {
@@ -46,7 +47,7 @@ Parts parts_of(AnyModel const& model, State const& full, GeneralisedAlpha const&
   VecX r(system.velocities()), rhs = VecX::Ones(system.velocities() + multipliers_of(system)), y = rhs;
   tangent.evaluate(system, place.at);
   tangent.balance(system, place, r);
-  if (tangent.factor(system, place, c) >= 0) std::printf("no pivot\n");
+  (void)tangent.factor(system, place, c);
   auto const nothing = [] {};
   std::vector<double> const us = timing::fastest({{nothing, [&] { tangent.evaluate(system, place.at); }},
                                                   {nothing, [&] { tangent.balance(system, place, r); }},
@@ -63,34 +64,51 @@ Parts parts_of(AnyModel const& model, State const& full, GeneralisedAlpha const&
   return {us[0], us[1], us[2], us[3] - numeric, numeric, linear.flops() / timing::eigen_rate()};
 }
 
-void measure(LinkSettings const& o, LinksOnPins const& links) {
-  Built const built = built_of(o, links);
+/// Model of a combination, ready to run.
+struct Drive {
+  LinkSettings const& o;
+  Built built;
   AnyModel const& model = built.vehicle.model;
-  State x = model.reference_state();
-  GeneralisedAlpha const by = integrator(o);
-  Simulation<GeneralisedAlpha> run =
-      simulate(model, x, by, {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
-  std::vector<double> times;
-  double last = cpu();
-  for (State const& state : run) {
-    double const now = cpu();
-    if (state.t > 0.0) times.push_back(1e6 * (now - last));
-    last = cpu();
+  State x = {};
+
+  Drive(LinkSettings const& options, LinksOnPins const& combination) : o(options), built(built_of(o, combination)) {}
+  Index unknowns() const { return problem_size(model).velocities + problem_size(model).rows; }
+  Simulation<GeneralisedAlpha> run() {
+    x = model.reference_state();
+    return simulate(model, x, integrator(o), {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
   }
-  double sum = 0.0;
-  for (double const t : times) sum += t;
+};
+
+void measure(benchmark::State& state, LinkSettings const& o, LinksOnPins const& combination) {
+  Drive drive(o, combination);
+  std::vector<double> times;
+  registered::time_runs(
+      state, drive.unknowns(), [&] { return drive.run(); },
+      [&](Simulation<GeneralisedAlpha>& run) {
+        times.clear();
+        while (!run.done()) {
+          double const before = cpu();
+          run.advance();
+          times.push_back(1e6 * (cpu() - before));
+        }
+      });
+  double const sum = std::accumulate(times.begin(), times.end(), 0.0), steps = double(times.size());
   std::sort(times.begin(), times.end());
-  double const steps = double(run.report().steps), iterations = double(run.report().iterations) / steps,
-               factorisations = double(run.report().factorisations) / steps;
-  Parts const p = parts_of(model, x, by, o.step);
-  std::printf(
-      "| `%s` | `%s` | %.2f | %.0f, %.0f, %.0f | %.2f, %.2f | %.0f, %.0f, %.0f | %.0f, %.0f (%.0f) | %.0f |\n",
-      links.body.name.c_str(), links.policy.c_str(), 1e-6 * sum / o.end_time, sum / steps,
-      times[times.size() - 1 - times.size() / 1000], times.back(), iterations, factorisations, p.evaluation, p.residual,
-      p.solution, p.writing, p.factorisation, p.limit,
-      100.0 * (iterations * (p.evaluation + p.residual + p.solution) + factorisations * (p.writing + p.factorisation)) *
-          steps / sum);
-  std::fflush(stdout);
+  auto& counters = state.counters;
+  counters["mean"] = sum / steps;
+  counters["99.9 %"] = times[times.size() - 1 - times.size() / 1000];
+  counters["largest"] = times.back();
+  Parts const p = parts_of(drive.model, drive.x, integrator(o), o.step);
+  counters["evaluation"] = p.evaluation;
+  counters["residual"] = p.residual;
+  counters["solution"] = p.solution;
+  counters["writing"] = p.writing;
+  counters["factorisation"] = p.factorisation;
+  counters["flop limit"] = p.limit;
+  counters["share"] = 100.0 *
+                      (counters["newton_iterations"] * (p.evaluation + p.residual + p.solution) +
+                       counters["factorisations"] * (p.writing + p.factorisation)) /
+                      sum;
 }
 
 /// Active contact points in ascending order. The number of a contact point is a hash of its track, link and contact
@@ -108,65 +126,59 @@ std::vector<std::size_t> touching(AnyVehicle const& vehicle, System& system, Sta
   return points;
 }
 
-/// Prints iterations and factorisations of steps by the number of contacts that begin or end within the step.
-void causes(LinkSettings const& o, LinksOnPins const& links) {
-  Built const built = built_of(o, links);
-  AnyModel const& model = built.vehicle.model;
-  State x = model.reference_state();
-  Simulation<GeneralisedAlpha> run =
-      simulate(model, x, integrator(o), {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
-  RunSystems const systems = model.systems_of<GeneralisedAlpha>();
+/// Counts iterations and factorisations of steps by the number of contacts that begin or end within the step.
+void causes(benchmark::State& state, LinkSettings const& o, LinksOnPins const& combination) {
+  Drive drive(o, combination);
+  RunSystems const systems = drive.model.systems_of<GeneralisedAlpha>();
   System& full = systems.full ? *systems.full : *systems.stepped;
   struct Class {
     std::size_t most;  // greatest number of contacts that begin or end
+    char const* name;
     double steps = 0.0, iterations = 0.0, factorisations = 0.0;
   };
-  std::vector<Class> classes{{0}, {2}, {5}, {10}, {std::size_t(-1)}};
-  std::vector<std::size_t> before, after, changed;
-  double iterations = 0.0, factorisations = 0.0;
-  for (State const& state : run) {
-    after = touching(built.vehicle, full, state);
-    auto const& report = run.report();
-    if (state.t > 0.0) {
+  std::vector<Class> classes;
+  auto const classify = [&](Simulation<GeneralisedAlpha>& run) {
+    classes = {{0, "none"}, {2, "1 or 2"}, {5, "3 to 5"}, {10, "6 to 10"}, {std::size_t(-1), "more"}};
+    std::vector<std::size_t> before = touching(drive.built.vehicle, full, run.now()), after, changed;
+    long iterations = 0, factorisations = 0;
+    while (!run.done()) {
+      run.advance();
+      after = touching(drive.built.vehicle, full, run.now());
       changed.clear();
       std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
                                     std::back_inserter(changed));
       Class& of =
           *std::find_if(classes.begin(), classes.end(), [&](Class const& c) { return changed.size() <= c.most; });
       of.steps += 1.0;
-      of.iterations += double(report.iterations) - iterations;
-      of.factorisations += double(report.factorisations) - factorisations;
+      of.iterations += double(run.report().iterations - iterations);
+      of.factorisations += double(run.report().factorisations - factorisations);
+      iterations = run.report().iterations;
+      factorisations = run.report().factorisations;
+      before.swap(after);
     }
-    iterations = double(report.iterations);
-    factorisations = double(report.factorisations);
-    before.swap(after);
+  };
+  registered::time_runs(state, drive.unknowns(), [&] { return drive.run(); }, classify);
+  for (Class const& c : classes) {
+    state.counters[c.name + std::string(": share")] = 100.0 * c.steps / state.counters["steps"];
+    state.counters[c.name + std::string(": iterations")] = c.iterations / c.steps;
+    state.counters[c.name + std::string(": factorisations")] = c.factorisations / c.steps;
   }
-  std::printf("| `%s` | `%s` |", links.body.name.c_str(), links.policy.c_str());
-  for (Class const& c : classes)
-    std::printf(" %.0f: %.2f, %.2f |", 100.0 * c.steps / double(run.report().steps), c.iterations / c.steps,
-                c.factorisations / c.steps);
-  std::printf("\n");
-  std::fflush(stdout);
 }
 
-void variants(LinkSettings o, LinksOnPins const& links) {
-  std::vector<lockstep::Counts> runs;
-  double const speed = o.speed;
-  double iteration = 0.0, factorisation = 0.0;
-  for (double const by : {0.0, 1e-5, 1e-4, 1e-3, 1e-2, -1e-2, -1e-4, -1e-3}) {
-    o.speed = speed * (1.0 + by);
-    Built const built = built_of(o, links);
-    AnyModel const& model = built.vehicle.model;
-    State x = model.reference_state();
-    Simulation<GeneralisedAlpha> run =
-        simulate(model, x, integrator(o), {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
-    runs.push_back(lockstep::counts_of(run));
-    if (by != 0.0) continue;
-    Parts const p = parts_of(model, x, integrator(o), o.step);
-    iteration = p.evaluation + p.residual + p.solution;
-    factorisation = p.writing + p.factorisation;
+void variants(benchmark::State& state, LinkSettings const& options, LinksOnPins const& combination) {
+  LinkSettings o = options;
+  for (auto _ : state) {
+    std::vector<lockstep::Counts> runs;
+    Parts p = {};
+    for (double const by : {0.0, 1e-5, 1e-4, 1e-3, 1e-2, -1e-2, -1e-4, -1e-3}) {
+      o.speed = options.speed * (1.0 + by);
+      Drive drive(o, combination);
+      auto run = drive.run();
+      runs.push_back(lockstep::counts_of(run));
+      if (by == 0.0) p = parts_of(drive.model, drive.x, integrator(o), o.step);
+    }
+    lockstep::count(state, runs, p.evaluation + p.residual + p.solution, p.writing + p.factorisation);
   }
-  lockstep::print("`" + links.body.name + "` on `" + links.policy + "`, speeds", runs, iteration, factorisation);
 }
 
 }  // namespace
@@ -178,55 +190,25 @@ int main(int argc, char** argv) {
   o.rho = 0.5;
   o.speed = 30.0;
   o.end_time = 4.0;
-  bool of_variants = false, of_causes = false;
-  std::string body, policy;
   o.masses = m113::with_steel_links(o.masses);
-  for (int i = 1; i + 1 < argc; i += 2) {
-    std::string const name = argv[i], value = argv[i + 1];
-    if (name == "--body")
-      body = value;
-    else if (name == "--policy")
-      policy = value;
-    else if (name == "--until")
-      o.end_time = std::stod(value);
-    else if (name == "--speed")
-      o.speed = std::stod(value);
-    else if (name == "--causes")
-      of_causes = value != "0";
-    else if (name == "--variants")
-      of_variants = value != "0";
-    else
-      return std::printf(
-                 "bench_vehicle: unknown option %s. The options are --body, --policy, --until, --speed, --causes and "
-                 "--variants.\n",
-                 name.c_str()),
+  o.files = POLYBODY_TRACK_LINK_FILES;
+  for (int i = 1; i < argc; i += 2) {
+    std::string const name = argv[i];
+    if (i + 1 == argc || (name != "--until" && name != "--speed"))
+      return std::fprintf(stderr,
+                          "bench_vehicle: unknown option %s. The options are --until S, --speed W and those of Google "
+                          "Benchmark.\n",
+                          argv[i]),
              1;
+    (name == "--until" ? o.end_time : o.speed) = std::stod(argv[i + 1]);
   }
-  auto const each = [&](auto&& f) {
-    for (LinksOnPins const& links : all_links())
-      if (links.refusals.front().empty() && (body.empty() || body == links.body.name) &&
-          (policy.empty() || policy == links.policy))
-        f(o, links);
-  };
-  if (of_causes) {
-    std::printf(
-        "%g s from a standstill to %g rad/s, steps of 1 ms: share of the steps [%%] in which so many contacts come or "
-        "go, and their iterations and factorisations\n\n| links | pins | none | 1 or 2 | 3 to 5 | 6 to 10 | more "
-        "|\n|---|---|---|---|---|---|---|\n",
-        o.end_time, o.speed);
-    each(causes);
-    return 0;
-  }
-  if (of_variants) {
-    lockstep::print_head();
-    each(variants);
-    return 0;
-  }
-  std::printf(
-      "%g s from a standstill to %g rad/s, steps of 1 ms; microseconds\n\n"
-      "| links | pins | CPU a second [s] | step: mean, 99.9 %%, largest | iterations, factorisations | evaluation, "
-      "residual, solution | writing, factorisation (flop limit) | share of the step [%%] |\n"
-      "|---|---|---|---|---|---|---|---|\n",
-      o.end_time, o.speed);
-  each(measure);
+  using Measure = void (*)(benchmark::State&, LinkSettings const&, LinksOnPins const&);
+  std::pair<char const*, Measure> const families[] = {{"step/", measure}, {"causes/", causes}, {"variants/", variants}};
+  for (auto const& [family, act] : families)
+    for (LinksOnPins const& c : all_links())
+      if (c.refusals.front().empty())
+        registered::add(family + registered::type_name(c.body.name) + '/' + registered::type_name(c.policy),
+                        [=, act = act](benchmark::State& state) { act(state, o, c); })
+            ->Iterations(1);
+  benchmark::RunSpecifiedBenchmarks();
 }

@@ -53,6 +53,8 @@ std::vector<BodyOnPolicy> engineering_cables(Mechanism);
 std::vector<BodyOnPolicy> floating_frames(Mechanism);
 std::vector<BodyOnPolicy> elastic_line_beams(Mechanism);
 std::vector<BodyOnPolicy> continuum_beams(Mechanism);
+// All of these bodies, with each policy.
+std::vector<BodyOnPolicy> bodies_on_policies(Mechanism);
 
 // Name of the case, and options of the cases 'run', 'compare' and 'combinations'. An empty list selects the defaults.
 struct FormulationOptions : combinations::Selection {

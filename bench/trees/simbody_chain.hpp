@@ -6,7 +6,7 @@
 namespace falling_chain {
 
 Call simbody_call(int links);
-/// One second of motion with the Runge–Kutta–Merson method at this `accuracy`.
-Second simbody_second(int links, double accuracy);
+/// One second of motion with the Runge–Kutta–Merson method.
+Second simbody_second(int links);
 
 }  // namespace falling_chain

@@ -16,12 +16,10 @@ struct Mechanisms {
   std::vector<MakeMechanism> make = {};
 
   explicit Mechanisms(Mechanism mechanism) : table{names_of(integrators), {}} {
-    for (auto const of_body : {rigid_bodies, lrvf_beams, green_cables, engineering_cables, floating_frames,
-                               spatial_rigid_bodies, elastic_line_beams, continuum_beams, spatial_lrvf_beams})
-      for (BodyOnPolicy const& one : of_body(mechanism)) {
-        table.rows.push_back(one);
-        make.push_back(one.make);
-      }
+    for (BodyOnPolicy const& one : bodies_on_policies(mechanism)) {
+      table.rows.push_back(one);
+      make.push_back(one.make);
+    }
   }
 };
 
@@ -153,17 +151,6 @@ std::string FormulationOptions::body_of_figures(std::vector<std::string> const& 
   for (std::string const& name : allowed) names += (names.empty() ? "" : ", ") + name;
   throw InvalidInput{"The case \"", ErrorObject{which}, "\" accepts one body of --body: ", names,
                      ". The cases 'run' and 'compare' accept a list of all bodies."};
-}
-
-Scenario<AnyModel> scenario_of(Problem const& problem, MakeMechanism const& make, FormulationMesh const& mesh) {
-  AnyMechanism const made = make(problem.setup, mesh);
-  auto const value = [tip = made.tip, of = problem.output_value](AnyModel const&, State const& x) {
-    return of(x.t, tip(x));
-  };
-  return {made.model,
-          made.model.reference_state(),
-          {.end_time = problem.end_time, .step = problem.end_time / 1000.0, .max_step_halvings = 6},
-          {{problem.output, value}}};
 }
 
 bool run_formulations(FormulationOptions const& o, Problem const& problem) {
