@@ -53,8 +53,10 @@ Steps ten_steps(LinkSettings const& settings, Combination const& c) {
   return out;
 }
 
-// The comparison at equal error of the selected combinations.
-void compare_selected(LinkSettings const& o) {
+// The comparison at equal error of the selected combinations. Errors of Newton's method must be small beside those of
+// mesh and step.
+void compare_selected(LinkSettings o) {
+  if (o.tolerance == 0.0) o.tolerance = 1e-9;
   auto const names = output_names();
   std::size_t const output = std::size_t(std::find(names.begin(), names.end(), o.output) - names.begin());
   Selection selection = o.selection;
@@ -85,7 +87,8 @@ void add_combination_options(CommandLine& line, LinkSettings& o, SelectionHelp h
   line.not_negative("--elements", &o.elements,
                     "elements of a flexible link except fe; 0: one, or two in a floating frame");
   line.positive("--tolerance", &o.tolerance,
-                "tolerance of Newton's method (if omitted, 1e-5); for adams and dormand-prince, of the error of a step "
+                "tolerance of Newton's method (if omitted, 1e-5, or at equal error 1e-9); for adams and "
+                "dormand-prince, of the error of a step "
                 "(if omitted, 1e-6)");
   line.one_of("--output", &o.output, output_names(), "output of the comparison at equal error");
 }
