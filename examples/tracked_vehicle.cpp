@@ -197,8 +197,10 @@ class Figures {
 
   // Difference of the forces in two runs with the same pins, the second with a preload that differs in the last place.
   void force_spread(Pins const& pins) {
+    if (o_.end_time < 4.0) return;
     Options perturbed = o_;
     perturbed.film = nullptr;
+    perturbed.animate = 0.0;
     perturbed.preload = std::nextafter(o_.preload, std::numeric_limits<double>::infinity());
     Runs const first = runs_(o_, {pins}), second = runs_(perturbed, {pins});
     if (first.times(0).back() >= 4.0)
