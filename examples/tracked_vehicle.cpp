@@ -193,8 +193,10 @@ class Figures {
 
   // Difference of the forces in two runs with the same pins, the second with a preload that differs in the last place.
   void force_spread(Pins (*pins_of)(Options const&)) {
+    if (o_.end_time < 4.0) return;
     Options perturbed = o_;
     perturbed.film = nullptr;
+    perturbed.animate = 0.0;
     perturbed.preload = std::nextafter(o_.preload, std::numeric_limits<double>::infinity());
     Pins const pins = pins_of(o_);
     Runs const first = runs_(o_, {pins}), second = runs_(perturbed, {pins_of(perturbed)});
