@@ -110,11 +110,12 @@ struct StudiedFormulationOf {
 template <class B, class P, MeshKind kind, class I>
 Combination combination_of(BodyName const& body, MakeMechanism const& make, I const& integrator) {
   std::string const model = body.model + (CompliantPolicy<P> ? std::string(", ") + P::name : "");
-  return {
-      .add = [=](EqualErrorStudy& study, Problem const& problem, std::string const& name, FormulationMesh const& mesh) {
-        auto const make_case = [problem](auto const& f) { return scenario_of(problem, f.make, f.mesh); };
-        study.add(make_case, StudiedFormulationOf<B, P, I, kind>{name, integrator, mesh, make}, {.model = model});
-      }};
+  return {.add = [=](EqualErrorStudy& study, Problem const& problem, std::string const& name,
+                     FormulationMesh const& mesh, StudyEntry entry) {
+    auto const make_case = [problem](auto const& f) { return scenario_of(problem, f.make, f.mesh); };
+    entry.model = model;
+    study.add(make_case, StudiedFormulationOf<B, P, I, kind>{name, integrator, mesh, make}, std::move(entry));
+  }};
 }
 
 // Message of the exception that Model throws for this mechanism; empty if it throws none.

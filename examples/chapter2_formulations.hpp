@@ -45,8 +45,10 @@ using MakeMechanism = std::function<AnyMechanism(Setup const&, FormulationMesh c
 struct Combination {
   // Sentence with which Model::connect or simulate refuses the combination; empty if the combination exists.
   std::string refusal = {};
-  // Adds the problem under this combination to a study, with the name of the formulation and its mesh.
-  std::function<void(EqualErrorStudy&, Problem const&, std::string const&, FormulationMesh const&)> add = {};
+  // Adds the problem under this combination to a study, with the name of the formulation, its mesh, and the meshes and
+  // steps of the entry. The combination sets the model of the entry.
+  std::function<void(EqualErrorStudy&, Problem const&, std::string const&, FormulationMesh const&, StudyEntry)> add =
+      {};
 };
 // A body formulation with one policy of the joint at its first end.
 struct BodyOnPolicy {

@@ -188,7 +188,7 @@ void compare_chosen(FormulationOptions const& o, Problem const& problem) {
     std::string name = choice.of.body.name;
     if (!o.policies.empty()) name += ", " + choice.of.policy;
     if (!o.integrators.empty()) name += ", " + all_integrators[choice.integrator];
-    choice.combination().add(study, problem, name, choice.mesh(o.meshes.back(), o.modes.back()));
+    choice.combination().add(study, problem, name, choice.mesh(o.meshes.back(), o.modes.back()), {});
   }
   std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n" << study.run();
 }
