@@ -47,7 +47,8 @@ void add_four_bar(Formulations& to) {
 // Lateral displacement of the middle of the beam.
 template <class B>
 AnyCase buckling(FormulationMesh const& mesh) {
-  BucklingBeam<B> of(mesh_of<B>(mesh), *mesh.elements);
+  Index const n = *mesh.elements;
+  BucklingBeam<B> of(mesh_of<B>(mesh), n, n / 2, std::max<Index>(1, n / 4));
   auto const middle = of.beam.at(0.5);
   using M = Mechanism<B>;
   return any_case(std::move(of.model), [middle](M const& m, State const& x) { return position(m, x, middle)[1]; });

@@ -127,10 +127,11 @@ Table unranked_table(EqualErrorReport const& r) {
 Table difference_table(EqualErrorReport const& r) {
   Table t{"Differences between physical models",
           "Largest difference over time between the converged results, with its error bar. A difference below its "
-          "error bar is not resolved.",
+          "error bar is not resolved. Models with an error bar above half of the span are omitted.",
           {"first", "second", "difference " + r.unit(), "error bar " + r.unit()},
           2};
   for (ModelDifference const& d : r.differences) {
+    if (d.error > 0.5 * r.span) continue;
     Cell const difference =
         d.resolved() ? Cell::number(d.difference, 3, d.error + 5e-3 * d.difference) : Cell::of("not resolved");
     t.rows.push_back({Cell::of(r.references[d.a].model), Cell::of(r.references[d.b].model), difference,

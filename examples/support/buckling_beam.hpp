@@ -15,17 +15,18 @@ struct BucklingBeam {
   Mechanism<B> model;
   BodyHandle<B> beam, link, crank;
 
-  BucklingBeam(Mesh<B> const& mesh, Index n)
+  /// \param n elements of the beam \param of_link elements of the link \param of_crank elements of the crank
+  BucklingBeam(Mesh<B> const& mesh, Index n, Index of_link = 4, Index of_crank = 2)
       : beam(model.add(mesh.make({.length = 1.0, .constants = of_beam()}, n), "beam")),
         link(model.add(mesh.make({.length = 0.25,
                                   .constants = round_bar(33.02e6, 10.81e6, 914.5, 1189, 1.212, 43.65e-6),
                                   .placement = Placement::at({1, d, 0}, {0, 0.5 * std::numbers::pi, 0})},
-                                 4),
+                                 of_link),
                        "link")),
         crank(model.add(mesh.make({.length = 0.05,
                                    .constants = round_bar(132.1e6, 43.22e6, 14630, 19020, 4.85, 698.3e-6),
                                    .placement = Placement::at({0.95, d, -0.25})},
-                                  2),
+                                  of_crank),
                         "crank")) {
     auto const g = model.ground().at({0.95, d, -0.25});
     model.connect(Fixed{}, model.ground().at({0, 0, 0}), beam.at(0.0), "R");
