@@ -52,24 +52,24 @@ Table settings_table(EqualErrorReport const& r) {
 
 std::string error_name(double wanted) { return number(wanted, 2); }
 
-// Least processor time of these runs whose body is not rigid; if all are rigid, of all [s].
-double fastest_flexible(EqualErrorReport const& r, std::vector<CheapestRun> const& runs) {
-  double flexible = std::numeric_limits<double>::infinity(), rigid = flexible;
-  for (CheapestRun const& c : runs) {
-    StudiedFormulation const& f = r.formulations[c.formulation];
-    double& least = f.family == families::rigid ? rigid : flexible;
-    least = std::min(least, std::max(f.runs[c.run].cpu, 1e-9));
-  }
-  return std::isfinite(flexible) ? flexible : rigid;
+// Least processor time of these runs [s]. Rigid bodies count only if they have the physical model of the problem.
+double fastest_of(Problem const& problem, EqualErrorReport const& r, std::vector<CheapestRun> const& runs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (CheapestRun const& c : runs)
+    if (StudiedFormulation const& f = r.formulations[c.formulation];
+        f.family != families::rigid || f.model == problem.model)
+      least = std::min(least, std::max(f.runs[c.run].cpu, 1e-9));
+  return least;
 }
 
-Table cheapest_table(EqualErrorReport const& r) {
+Table cheapest_table(Problem const& problem, EqualErrorReport const& r) {
   Table t{"Cheapest settings",
           "Cheapest run of each formulation whose discretisation error is at most the wanted error, relative to the "
           "span " +
               number(r.span, 4) + ' ' + r.unit() +
-              " of the output. Times are medians of repeated runs. The ratio is relative to the fastest run of a "
-              "flexible body.",
+              " of the output. Times are medians of repeated runs. The ratio is relative to the fastest "
+              "run, without rigid bodies of another physical model than \"" +
+              problem.model + "\".",
           {"error", "formulation", "mesh, step", "error found " + r.unit(), "unknowns", "Newton iterations",
            "factorisations", "time [s]", "ratio"},
           2};
@@ -77,7 +77,7 @@ Table cheapest_table(EqualErrorReport const& r) {
     for (CheapestRun const& c : ranking.ranked) {
       StudiedFormulation const& f = r.formulations[c.formulation];
       StudyRun const& run = f.runs[c.run];
-      double const ratio = run.cpu / fastest_flexible(r, ranking.ranked);
+      double const ratio = run.cpu / fastest_of(problem, r, ranking.ranked);
       t.rows.push_back({Cell::of(error_name(ranking.wanted)), Cell::of(f.name),
                         Cell::time(polybody::detail::setting_of(f, run)), Cell::time(number(run.error, 2)),
                         Cell::time(std::to_string(run.unknowns)), Cell::time(std::to_string(run.iterations)),
@@ -88,8 +88,8 @@ Table cheapest_table(EqualErrorReport const& r) {
 }
 
 // Compares the settings of the page with the runs of these settings: the cheapest setting depends on times.
-std::vector<std::string> check_cheapest(EqualErrorReport const& r, std::string_view page) {
-  Table const fresh = cheapest_table(r);
+std::vector<std::string> check_cheapest(Problem const& problem, EqualErrorReport const& r, std::string_view page) {
+  Table const fresh = cheapest_table(problem, r);
   std::vector<std::string> faults = differences(fresh, page);
   for (TextRow const& row : rows_of(page, fresh.title)) {
     if (row.size() != fresh.heads.size()) continue;  // a fault of `differences`
@@ -218,7 +218,7 @@ Table summary_table(std::vector<Done> const& all) {
       for (Ranking const& ranking : r.rankings) {
         if (error_name(ranking.wanted) != t.heads[k]) continue;
         std::vector<CheapestRun> runs = admissible(done, ranking);
-        double const least = fastest_flexible(r, runs);
+        double const least = fastest_of(done.problem, r, runs);
         runs.resize(std::min<std::size_t>(runs.size(), 3));
         for (CheapestRun const& c : runs) {
           StudiedFormulation const& f = r.formulations[c.formulation];
@@ -288,14 +288,9 @@ Table coarse_table(EqualErrorReport const& r) {
 
 std::vector<Table> tables_of(Done const& done) {
   EqualErrorReport const& r = done.report;
-  return {settings_table(r),
-          cheapest_table(r),
-          unranked_table(r),
-          difference_table(r),
-          known_table(done.problem, r),
-          remark_table(done.problem, r),
-          coarse_table(r),
-          external_table(done.others, r)};
+  return {settings_table(r),   cheapest_table(done.problem, r), unranked_table(r),
+          difference_table(r), known_table(done.problem, r),    remark_table(done.problem, r),
+          coarse_table(r),     external_table(done.others, r)};
 }
 
 void write_page(Done const& done, fs::path const& folder) {
@@ -317,7 +312,7 @@ std::vector<std::string> check_page(Done const& done, fs::path const& folder, bo
       if (quick) break;
       bool const shown = page.find("## " + table.title + '\n') != page.npos;
       if (table.title == "Cheapest settings")
-        add(check_cheapest(done.report, page));
+        add(check_cheapest(done.problem, done.report, page));
       else if (!table.rows.empty() || (shown && table.title != "Other programs"))
         add(differences(table, page));
     }
@@ -330,14 +325,24 @@ std::vector<std::string> check_page(Done const& done, fs::path const& folder, bo
 
 void write_summary(std::vector<Done> const& all, fs::path const& folder) {
   std::string const file = page_name(folder, summary);
-  Table table = summary_table(all);
-  if (auto const text = polybody::detail::content_of(file))  // rows of problems that did not run
-    for (TextRow const& row : rows_of(part_of(*text), summary_title)) {
-      auto const is_same = [&](auto const& mine) { return mine.front().text == row.front(); };
-      if (std::any_of(table.rows.begin(), table.rows.end(), is_same)) continue;
-      table.rows.emplace_back();
-      for (std::string const& cell : row) table.rows.back().push_back(Cell::of(cell));
+  Table const fresh = summary_table(all);
+  Table table = fresh;
+  if (auto const text = polybody::detail::content_of(file)) {
+    table.rows.clear();
+    std::vector<TextRow> const old = rows_of(part_of(*text), summary_title);
+    auto const row_of = [&](std::string const& name) {
+      return std::find_if(fresh.rows.begin(), fresh.rows.end(), [&](auto const& row) { return row[0].text == name; });
+    };
+    for (TextRow const& row : old) {  // rows of problems that did not run stay
+      std::vector<Cell> cells;
+      for (std::string const& cell : row) cells.push_back(Cell::of(cell));
+      auto const mine = row_of(row.front());
+      table.rows.push_back(mine != fresh.rows.end() ? *mine : cells);
     }
+    for (auto const& row : fresh.rows)
+      if (std::none_of(old.begin(), old.end(), [&](TextRow const& one) { return one.front() == row[0].text; }))
+        table.rows.push_back(row);
+  }
   write_part(file, "# Which formulation when\n\n", markdown(table));
 }
 
