@@ -84,6 +84,12 @@ struct RobotArm {
   BodyHandle<B> const& body() const { return arm; }
 };
 
+// Distance of the arm's tip behind the rigid arm [m], for a ramp of this duration [s].
+inline double lag_of(double t, Vec3 const& tip, double ramp) {
+  double const psi = Ramp{.target = angle, .duration = ramp}(t).value;
+  return std::sin(psi) * tip[0] - std::cos(psi) * tip[1];
+}
+
 // The beam is clamped at the origin and a moment about z acts at its tip.
 template <class B, class P = Constraint>
 struct Cantilever {

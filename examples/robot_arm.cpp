@@ -136,12 +136,6 @@ void run_case(Options const& o, Case const& c) {
   if constexpr (two_meshes) watch.tell();
 }
 
-// Distance of the tip behind the rigid arm [m].
-double lag_of(double t, Vec3 const& tip, double ramp) {
-  double const psi = Ramp{.target = angle, .duration = ramp}(t).value;
-  return std::sin(psi) * tip[0] - std::cos(psi) * tip[1];
-}
-
 // Case for `compare`: the arm in one formulation.
 struct ArmCase {
   Options const& o;

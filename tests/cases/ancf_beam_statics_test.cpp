@@ -11,6 +11,7 @@
 
 #include "support/held.hpp"
 #include "support/spatial_cantilever.hpp"
+#include "support/spatial_cantilevers.hpp"
 
 using namespace polybody;
 
@@ -145,16 +146,7 @@ TEST(AncfEndMoments, Following) {
 // ---- S6: the Princeton beam of Dowell & Traybar 1975, deflections and twist
 
 TEST(AncfPrinceton, MeetsTheExactRod) {
-  double const e = 71.7e9, g = e / 2.62, h = 12.3777e-3, w = 3.2024e-3, a = h * w;
-  double const iz = w * h * h * h / 12, iy = h * w * w * w / 12;
-  Bar const bar{.length = 0.508,
-                .constants = BarConstants{.EA = e * a,
-                                          .EI = e * iz,
-                                          .mass_per_length = 1,
-                                          .GA = g * a,
-                                          .GJ = 0.198 * g * (iy + iz),
-                                          .rotary_inertia = 1e-5,
-                                          .EI_y = e * iy}};
+  Bar const bar = spatial_cantilevers::princeton();
   struct {
     double force, beta;  ///< [N], [deg]
     Vec3 u;
@@ -186,18 +178,12 @@ TEST(AncfPrinceton, MeetsTheExactRod) {
 
 // ---- S7: the 45° bend of Bathe & Bolourchi
 
-Placement bend(double s) {
-  double const a = s / 100;
-  return {100 * Vec3(std::sin(a), 1 - std::cos(a), 0), exp_so3<double>(Vec3(0, 0, a))};
-}
 Vec3 bathe(Bar bar, Index n, double force) {
-  bar.length = 25 * pi;
-  return SpatialCantilever<Beam>(Beam::from(bar, n, bend), {.force = {0, 0, force}}, {.load_steps = 4}).tip();
+  bar.length = spatial_cantilevers::bend_bar(1, 1).length;
+  return SpatialCantilever<Beam>(Beam::from(bar, n, spatial_cantilevers::bend_curve), {.force = {0, 0, force}},
+                                 {.load_steps = 4})
+      .tip();
 }
-BarConstants with(double ga, double gj) {
-  return {.EA = 1e7, .EI = 1e7 / 12, .mass_per_length = 1, .GA = ga, .GJ = gj, .rotary_inertia = 1.0 / 12};
-}
-
 TEST(AncfBatheBolourchi, MeetsTheExactRod) {
   struct {
     double ga, gj, force;
@@ -207,7 +193,7 @@ TEST(AncfBatheBolourchi, MeetsTheExactRod) {
                     {5e6, 1e7 / 12, 3000, {23.0243082249, 4.2328759166, 68.5390894931}},
                     {5e7 / 12, 1e7 / 12, 600, {47.1500962403, 15.6846894790, 53.4754779982}}};
   for (auto const& row : rows) {
-    Bar const bar{.length = 1.0, .constants = with(row.ga, row.gj)};
+    Bar const bar = spatial_cantilevers::bend_bar(row.ga, row.gj);
     Vec3 const coarse = bathe(bar, 32, row.force), fine = bathe(bar, 64, row.force);
     // Straight elements have errors of about 3e-3 and 2e-4 at 600 N (S7). The errors here are 4.3e-3 and 2.5e-4 at
     // 600 N, and 7.5e-3 and 3.8e-4 at 3000 N.

@@ -13,6 +13,7 @@
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/flying_rod.hpp"
 #include "support/held.hpp"
 #include "support/solver_instances.hpp"
 
@@ -20,24 +21,8 @@ using namespace polybody;
 
 namespace flying_rod_test {
 
-/// Triangular function of time: from 0 to 1 at `peak`, back to 0 at twice `peak`.
-struct Triangle {
-  double peak = 2.5;  ///< [s]
-  Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / peak - 1.0)), 0.0, 0.0}; }
-  std::vector<double> breakpoints() const { return {0.0, peak, 2.0 * peak}; }
-};
-
-/// Rod from (6, 0, 0) to (0, 8, 0). The section's inertia about its own x is the sum of the two others, 20.
-Bar rod(double rotary_share = 1.0) {
-  return {.length = 10.0,
-          .constants = BarConstants{.EA = 1e4,
-                                    .EI = 500,
-                                    .mass_per_length = 1.0,
-                                    .GA = 1e4,
-                                    .GJ = 500,
-                                    .rotary_inertia = 10.0 * rotary_share},
-          .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
-}
+using flying_rod::rod;
+using flying_rod::Triangle;
 
 using Weldment = Joint<Weld, Constraint>;
 /// Model type for all bodies, which is compiled once.

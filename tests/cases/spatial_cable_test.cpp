@@ -18,6 +18,7 @@
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"
+#include "support/spinning_pendulum.hpp"
 
 using namespace polybody;
 
@@ -179,25 +180,14 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   }
 }
 
-// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y, h = 1 ms. The tolerance for 16
-// cable elements is 2e-3 to t = 1 s and 1e-2 at 2 s. GA, GJ and Iρ are those of the reference, which does not depend
-// on them.
-Bar pendulum() {
-  return {.length = 1.0,
-          .constants = BarConstants{.EA = 40.0,
-                                    .EI = 7.957747154594767e-5,
-                                    .mass_per_length = 8e-3,
-                                    .GA = 15.0,
-                                    .GJ = 6e-5,
-                                    .rotary_inertia = 1.59e-8}};
-}
+// D6a, h = 1 ms. The tolerance for 16 cable elements is 2e-3 to t = 1 s and 1e-2 at 2 s.
 Claim spinning(char const* what, char const* formulation) {
   return {"D6a", what, By::independent, "spectral geometrically exact beam, two meshes", formulation};
 }
 template <class B>
 void spins(Index n, char const* formulation) {
   Hung model{Gravity{0, -9.81, 0}};
-  auto const rod = model.add(B::from(pendulum(), n), "rod");
+  auto const rod = model.add(B::from(spinning_pendulum::bar(), n), "rod");
   model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(0.0), "hinge");
   State x = model.reference_state();
   model.set_velocity(x, rod, Vec3::Zero(), Vec3(0, 4, 0));
@@ -235,7 +225,7 @@ TEST(SpinningPendulum, CableFollowsTheConvergedMotionWithRadau) {
   for (Run const& run :
        {Run{32, 1e-3, 0.1, {0.917305, -0.049063, -0.387767}}, Run{16, 4e-3, 0.5, {-0.690713, -0.710316, -0.086963}}}) {
     Hung model{Gravity{0, -9.81, 0}};
-    auto const rod = model.add(Cable::from(pendulum(), run.n), "rod");
+    auto const rod = model.add(Cable::from(spinning_pendulum::bar(), run.n), "rod");
     model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(0.0), "hinge");
     State x = model.reference_state();
     model.set_velocity(x, rod, Vec3::Zero(), Vec3(0, 4, 0));

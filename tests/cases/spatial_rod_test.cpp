@@ -10,6 +10,7 @@
 
 #include "support/held.hpp"
 #include "support/spatial_cantilever.hpp"
+#include "support/spatial_cantilevers.hpp"
 
 using namespace polybody;
 
@@ -99,14 +100,9 @@ struct PrincetonTip {
   double twist;
 };
 PrincetonTip princeton_tip(Index n, Princeton const& row) {
-  double const e = 71.7e9, g = e / 2.62, h = 12.3777e-3, w = 3.2024e-3, a = h * w;
-  double const iz = w * h * h * h / 12, iy = h * w * w * w / 12, beta = row.degrees * pi / 180;
-  Bar const bar{
-      .length = 0.508,
-      .constants = BarConstants{
-          .EA = e * a, .EI = e * iz, .mass_per_length = 1, .GA = g * a, .GJ = 0.198 * g * (iy + iz), .EI_y = e * iy}};
-  Rod const rod(Lrvf<>::from(bar, n), {.force = row.force * Vec3(0, -std::cos(beta), std::sin(beta))},
-                {.load_steps = 2});
+  double const beta = row.degrees * pi / 180;
+  Rod const rod(Lrvf<>::from(spatial_cantilevers::princeton(), n),
+                {.force = row.force * Vec3(0, -std::cos(beta), std::sin(beta))}, {.load_steps = 2});
   Mat3 const turn = rod.tip_turn();
   return {rod.tip_displacement(), std::atan2(turn(2, 1), turn(1, 1))};
 }
@@ -147,14 +143,10 @@ Bend const bends[] = {{5e6, polar, 300, {58.7791224897, 22.2447809454, 40.191891
                       {5e6 / 1.2, saint_venant, 600, {46.8915863910, 15.5576762394, 53.6079863172}}};
 
 Vec3 bend_tip(Index n, Bend const& b) {
-  double const radius = 100;
-  Bar const bar{.length = radius * pi / 4,
-                .constants = BarConstants{.EA = 1e7, .EI = twelfth, .mass_per_length = 1, .GA = b.GA, .GJ = b.GJ}};
-  auto const arc = [=](double s) {
-    double const angle = s / radius;
-    return Placement::at(radius * Vec3(std::sin(angle), 1 - std::cos(angle), 0), Vec3(0, 0, angle));
-  };
-  return Rod(Lrvf<>::from(bar, n, arc), {.force = {0, 0, b.force}}, {.load_steps = b.force > 1000 ? 8 : 2}).tip();
+  Bar const bar = spatial_cantilevers::bend_bar(b.GA, b.GJ);
+  return Rod(Lrvf<>::from(bar, n, spatial_cantilevers::bend_curve), {.force = {0, 0, b.force}},
+             {.load_steps = b.force > 1000 ? 8 : 2})
+      .tip();
 }
 
 // Tolerances of S7 relative to the displacement: 0.3 % with 8 elements, 2e-4 with 32.

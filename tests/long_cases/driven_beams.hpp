@@ -4,6 +4,7 @@
 /// [Bauchau et al. 2016, Multibody Syst. Dyn. 37, 29–48]. The references are spectral geometrically exact beams.
 
 #include "mechanism.hpp"
+#include "support/buckling_beam.hpp"
 
 namespace polybody::long_cases {
 
@@ -27,58 +28,15 @@ inline constexpr BucklingRow buckling_table[] = {
     {0.3, -0.0169347, 0.0010592, -0.0013112, 0.0038027},   {0.35, 0.0191311, -0.0038993, 0.0030826, -0.0143032},
     {0.4, -0.0220714, -0.0051619, -0.0040196, -0.0201670}};
 
-/// The beam is clamped at the origin along x. Link and crank are at the distance d from it.
+/// Run of the mechanism.
 template <class B>
-struct BucklingBeam {
-  static constexpr double d = 1e-4, duration = 0.4;
-  Mechanism<B> model;
-  BodyHandle<B> beam, link, crank;
-  State x;
+struct BucklingRun : BucklingBeam<B> {
+  using BucklingBeam<B>::model, BucklingBeam<B>::beam;
+  State x = model.reference_state();
 
-  BucklingBeam(Mesh<B> const& mesh, Index n)
-      : beam(model.add(mesh.make({.length = 1.0, .constants = of_beam()}, n), "beam")),
-        link(model.add(mesh.make({.length = 0.25,
-                                  .constants = round_bar(33.02e6, 10.81e6, 914.5, 1189, 1.212, 43.65e-6),
-                                  .placement = Placement::at({1, d, 0}, {0, 0.5 * pi, 0})},
-                                 4),
-                       "link")),
-        crank(model.add(mesh.make({.length = 0.05,
-                                   .constants = round_bar(132.1e6, 43.22e6, 14630, 19020, 4.85, 698.3e-6),
-                                   .placement = Placement::at({0.95, d, -0.25})},
-                                  2),
-                        "crank")) {
-    auto const g = model.ground().at({0.95, d, -0.25});
-    model.connect(Fixed{}, model.ground().at({0, 0, 0}), beam.at(0.0), "R");
-    model.connect(Ball{}, beam.at(1.0, d), link.at(0.0), "C");
-    model.connect(hinge(Vec3::UnitY()), link.at(0.25), crank.at(0.05), "B");
-    model.connect(hinge(Vec3::UnitY()), g, crank.at(0.0), "G");
-    model.connect(drive(Vec3::UnitY(), {[](double t) {
-                                          double const p = pi / duration, s = std::min(t, duration);
-                                          double const rest = t < duration ? 1.0 : 0.0;
-                                          return Motion{-0.5 * pi * (1.0 - std::cos(p * s)),
-                                                        -0.5 * pi * p * std::sin(p * s) * rest,
-                                                        -0.5 * pi * p * p * std::cos(p * s) * rest};
-                                        },
-                                        {duration}}),
-                  g, crank.at(0.0), "drive");
-    x = model.reference_state();
-  }
-  BucklingBeam(BucklingBeam const&) = delete;
+  BucklingRun(Mesh<B> const& mesh, Index n) : BucklingBeam<B>(mesh, n) {}
+  BucklingRun(BucklingRun const&) = delete;
 
-  static BarConstants of_beam() {
-    return {.EA = 73e6,
-            .EI = 608.3,
-            .mass_per_length = 2.68,
-            .GA = 5.025e6,
-            .GJ = 877.2,
-            .rotary_inertia = 22.33e-6,
-            .EI_y = 60830.0,
-            .GA_z = 23.40e6,
-            .rotary_inertia_y = 2233e-6};
-  }
-  static BarConstants round_bar(double ea, double ga, double gj, double ei, double mass, double rotary) {
-    return {.EA = ea, .EI = ei, .mass_per_length = mass, .GA = ga, .GJ = gj, .rotary_inertia = rotary};
-  }
   void run_until(double t, double h) {
     simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = h}).run();
   }
@@ -88,7 +46,7 @@ struct BucklingBeam {
 /// \param lateral tolerances of the lateral displacements until 0.12, 0.14, 0.2, 0.25 and 0.4 s [m]
 template <class B>
 void beam_buckles(Mesh<B> const& mesh, Index n, double h, std::array<double, 5> const& lateral) {
-  BucklingBeam<B> m(mesh, n);
+  BucklingRun<B> m(mesh, n);
   std::string const name = mesh.name + ", " + std::to_string(n) +
                            " elements, generalised-α, h = " + std::to_string(int(std::round(h * 1e6))) + " µs";
   for (BucklingRow const& row : buckling_table) {

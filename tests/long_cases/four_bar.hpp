@@ -4,6 +4,7 @@
 /// path of equilibria is compared with shooting on the exact rod equations.
 
 #include "mechanism.hpp"
+#include "support/misaligned_four_bar.hpp"
 
 namespace polybody::long_cases {
 
@@ -111,40 +112,15 @@ inline FourBarRow const four_bar_table[] = {{0.5,
                                              -1.677302e-03,
                                              {0.33521032, 0.07294037, -3.075281e-03}}};
 
-/// A at the origin, B (0, 0.12, 0), C (0.24, 0.12, 0), D (0.24, 0, 0). The hinge at C is inclined by 5°.
+/// Path of equilibria of the mechanism, whose crank turns by −0.6 rad/s.
 template <class B>
-struct FourBar {
-  Mechanism<B> model;
-  BodyHandle<B> ab, bc, cd;
-  ElementHandle<Hinge> at_a;
-  ElementHandle<Drive> crank;
-  State x;
-  Vec3 const lean{std::sin(std::numbers::pi / 36.0), 0.0, std::cos(std::numbers::pi / 36.0)};
+struct FourBarPath : FourBar<B> {
+  using FourBar<B>::model, FourBar<B>::ab, FourBar<B>::bc, FourBar<B>::cd, FourBar<B>::at_a, FourBar<B>::crank;
+  State x = model.reference_state();
 
-  FourBar(Mesh<B> const& mesh, Index n)
-      : ab(model.add(mesh.make(bar(0.12, thick(), 0.0, 0.0, 0.5), n), "AB")),
-        bc(model.add(mesh.make(bar(0.24, thick(), 0.0, 0.12, 0.0), 2 * n), "BC")),
-        cd(model.add(mesh.make(bar(0.12, thin(), 0.24, 0.12, -0.5), n), "CD")),
-        at_a(model.connect(hinge(Vec3::UnitZ()), model.ground().at({0, 0, 0}), ab.at(0.0), "A")),
-        crank(model.connect(drive(Vec3::UnitZ(), {[](double t) { return Motion{-0.6 * t, -0.6, 0.0}; }}),
-                            model.ground().at({0, 0, 0}), ab.at(0.0), "crank")) {
-    model.connect(hinge(Vec3::UnitZ()), ab.at(0.12), bc.at(0.0), "B");
-    model.connect(hinge(lean), bc.at(0.24), cd.at(0.0), "C");
-    model.connect(hinge(Vec3::UnitZ()), cd.at(0.12), model.ground().at({0.24, 0, 0}), "D");
-    x = model.reference_state();
-  }
-  FourBar(FourBar const&) = delete;
-
-  static Bar bar(double length, BarConstants const& c, double px, double py, double quarter_turns) {
-    return {.length = length, .constants = c, .placement = Placement::planar(px, py, quarter_turns * std::numbers::pi)};
-  }
-  static BarConstants thick() {
-    return {.EA = 52.99e6, .EI = 1131, .mass_per_length = 1.997, .GA = 16.88e6, .GJ = 733.5, .rotary_inertia = 42.6e-6};
-  }
-  static BarConstants thin() {
-    return {
-        .EA = 13.25e6, .EI = 70.66, .mass_per_length = 0.4992, .GA = 4.22e6, .GJ = 45.84, .rotary_inertia = 2.662e-6};
-  }
+  FourBarPath(Mesh<B> const& mesh, Index n)
+      : FourBar<B>(mesh, n, {[](double t) { return Motion{-0.6 * t, -0.6, 0.0}; }}) {}
+  FourBarPath(FourBarPath const&) = delete;
 
   /// Follows the path to the crank angle at t, in steps of 0.8°, or 0.08° near the collinear configurations.
   void follow_to(double t) {
@@ -171,7 +147,7 @@ struct FourBar {
     Vec3 const z = Vec3::UnitZ();
     Mat3 const b = turned(ab.at(0.12)).transpose() * turned(bc.at(0.0));
     Mat3 const c = turned(bc.at(0.24)).transpose() * turned(cd.at(0.0));
-    return {angle_about(b, z, row.angles[0]), angle_about(c, lean, row.angles[1]),
+    return {angle_about(b, z, row.angles[0]), angle_about(c, this->lean, row.angles[1]),
             angle_about(turned(cd.at(0.12)), z, row.angles[2])};
   }
 };
@@ -180,7 +156,7 @@ struct FourBar {
 /// their size; N₁, which closes the loop in its plane, is ten times as sensitive, angles a hundred times less
 template <class B>
 void four_bar_follows(Mesh<B> const& mesh, Index n, double ratio, double tolerance) {
-  FourBar<B> coarse(mesh, n), fine(mesh, 2 * n);
+  FourBarPath<B> coarse(mesh, n), fine(mesh, 2 * n);
   std::string const name =
       mesh.name + ", " + std::to_string(n) + " and " + std::to_string(2 * n) + " elements on 0.12 m, extrapolated";
   auto const claim = [&](char const* what) {
@@ -191,7 +167,7 @@ void four_bar_follows(Mesh<B> const& mesh, Index n, double ratio, double toleran
     fine.follow_to(row.t);
     Instance const at{equals("t", row.t)};
     auto const limit = [&](auto const& of) { return extrapolated(of(coarse), of(fine), ratio); };
-    auto const force = [&](int i) { return limit([&](FourBar<B> const& m) { return m.root()[i]; }); };
+    auto const force = [&](int i) { return limit([&](FourBarPath<B> const& m) { return m.root()[i]; }); };
     double const force_size = row.n.tail<2>().norm(), moment_size = row.m.norm();
     held(claim("N₁ at A [N]"), force(0), row.n[0], 10.0 * tolerance * std::max(20.0, std::abs(row.n[0])),
          {at.at, 20.0});
@@ -208,13 +184,14 @@ void four_bar_follows(Mesh<B> const& mesh, Index n, double ratio, double toleran
       held(claim(i == 0   ? "θ_B [rad]"
                  : i == 1 ? "θ_C [rad]"
                           : "φ_D [rad]"),
-           limit([&](FourBar<B> const& m) { return m.angles(row)[i]; }), row.angles[i], 0.01 * tolerance, {at.at, 1.0});
+           limit([&](FourBarPath<B> const& m) { return m.angles(row)[i]; }), row.angles[i], 0.01 * tolerance,
+           {at.at, 1.0});
     held(claim("rise of the middle of BC [m]"),
-         limit([&](FourBar<B> const& m) { return position(m.model, m.x, m.bc.at(0.12))[2]; }), row.z,
+         limit([&](FourBarPath<B> const& m) { return position(m.model, m.x, m.bc.at(0.12))[2]; }), row.z,
          tolerance * 2.6e-3, {at.at, 2.6e-3});
     Vec3 c;
     for (int i = 0; i < 3; ++i)
-      c[i] = limit([&](FourBar<B> const& m) { return position(m.model, m.x, m.bc.at(0.24))[i]; });
+      c[i] = limit([&](FourBarPath<B> const& m) { return position(m.model, m.x, m.bc.at(0.24))[i]; });
     held_within(claim("place of C [m]"), (c - row.c).norm(), 0.0024 * tolerance, {at.at, 0.36});
   }
 }

@@ -5,26 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/driving_constraints.hpp>
-#include <polybody/joints/joint.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "held.hpp"
+#include "support/spin_up_arm.hpp"
 
 namespace polybody {
 namespace spin_up {
-
-using Drive = Joint<PrescribedAngle<SpinUp>, Constraint>;
-inline Drive drive() { return {{{.speed = 6.0, .duration = 15.0}, Vec3::UnitZ()}, {}}; }
-
-/// Constants of D2. EI_y and GJ are arbitrary: the motion is planar.
-inline Bar arm() {
-  return {
-      .length = 10.0,
-      .constants = BarConstants{
-          .EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .GA = 1e7, .GJ = 5e3, .rotary_inertia = 6e-4, .EI_y = 9e3}};
-}
 
 struct Row {
   double t, u1, u2;
