@@ -47,7 +47,7 @@ AnyCase cable_links(FormulationMesh const& mesh) {
 
 template <class P>
 void add_rigid(Formulations& to, std::string const& name, std::string const& model, P const& policy) {
-  to.add<planar::Rigid, MeshKind::none, P>(name, model, {{}, {8e-3, 4e-3, 2e-3, 1e-3, 5e-4}},
+  to.add<planar::Rigid, MeshKind::none, P>(name, model, {{}, {3.2e-2, 1.6e-2, 8e-3, 4e-3, 2e-3, 1e-3, 5e-4}},
                                            [policy](FormulationMesh const&) { return rigid_links(policy); });
 }
 
@@ -59,7 +59,7 @@ void add(Formulations& to) {
   add_rigid(to, "rigid links, joint coordinates", "rigid links on ideal pins", JointCoordinates{});
   add_rigid(to, "rigid links, penalty", "rigid links on springs of 1e7 N/m", Penalty{.stiffness = k, .damping = c});
   add_rigid(to, "rigid links, bushing", "rigid links on bushings of 1e7 N/m", bushing);
-  Settings const settings{{1, 2, 4}, {4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}};
+  Settings const settings{{1, 2, 4}, {1.6e-2, 8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}};
   using Cable = planar::AncfCable<planar::EngineeringStrain>;
   to.add<Cable, MeshKind::elements, AncfLinear>("cable links, ANCF linear", "cable links on ideal pins", settings,
                                                 cable_links<AncfLinear>);

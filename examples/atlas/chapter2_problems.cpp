@@ -36,7 +36,7 @@ void add_bodies(Formulations& to, chapter2::Problem const& problem, std::vector<
 }
 
 // The sudden loads of both problems excite vibrations that only short steps resolve.
-std::vector<double> const steps{1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4, 3.125e-4, 1.5625e-4};
+std::vector<double> const steps{4e-2, 2e-2, 1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4, 3.125e-4, 1.5625e-4};
 
 // Bodies with their meshes. The spatial bodies have coarser meshes.
 std::vector<OfBody> bodies(std::vector<Index> const& lrvf) {

@@ -55,7 +55,7 @@ AnyCase buckling(FormulationMesh const& mesh) {
 }
 
 void add_buckling(Formulations& to) {
-  std::vector<double> const steps{1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
+  std::vector<double> const steps{2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
   char const* const small = "small deformation in a floating frame";
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{8, 16, 32, 64, 128}, steps}, buckling<Lrvf<>>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",

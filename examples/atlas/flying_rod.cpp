@@ -25,7 +25,7 @@ AnyCase flight(FormulationMesh const& mesh) {
 }
 
 void add(Formulations& to) {
-  std::vector<double> const steps{0.04, 0.02, 0.01, 0.005, 0.0025};
+  std::vector<double> const steps{0.08, 0.04, 0.02, 0.01, 0.005, 0.0025};
   std::vector<Index> const linear{8, 16, 32, 64, 128};
   char const* const small = "small deformation in a floating frame";
   to.add<Rigid<>, MeshKind::none>("rigid body", "rigid bar", {{}, steps}, flight<Rigid<>>);

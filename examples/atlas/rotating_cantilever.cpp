@@ -38,7 +38,7 @@ AnyCase arm(FormulationMesh const& mesh) {
 }
 
 void add(Formulations& to) {
-  std::vector<double> const steps{0.02, 0.01, 0.005, 0.0025};
+  std::vector<double> const steps{0.04, 0.02, 0.01, 0.005, 0.0025};
   std::vector<Index> const cubic{2, 4, 8, 16, 32}, linear{5, 10, 20, 40, 80, 160};
   to.add<planar::Lrvf>("LRVF in the plane", "rigid sections", {linear, steps}, arm<planar::Lrvf>);
   to.add<planar::AncfCable<planar::GreenStrain>>("ANCF cable, Green strain", "cable, Green strain", {cubic, steps},

@@ -26,7 +26,7 @@ AnyCase in_space(FormulationMesh const& mesh) {
 }
 
 void add(Formulations& to) {
-  std::vector<double> const steps{1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
+  std::vector<double> const steps{2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
   std::vector<Index> const cubic{2, 4, 8, 16}, linear{4, 8, 16, 32, 64};
   using Green = planar::AncfCable<planar::GreenStrain>;
   using Engineering = planar::AncfCable<planar::EngineeringStrain>;

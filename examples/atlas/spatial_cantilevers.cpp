@@ -40,7 +40,7 @@ AnyCase solid_princeton(FormulationMesh const& mesh) {
 }
 
 void add_princeton(Formulations& to) {
-  std::vector<double> const steps{2e-2, 1e-2, 5e-3, 2.5e-3, 1.25e-3};
+  std::vector<double> const steps{4e-2, 2e-2, 1e-2, 5e-3, 2.5e-3, 1.25e-3};
   char const* const small = "small deformation in a floating frame";
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, princeton<Lrvf<>>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
@@ -64,7 +64,7 @@ AnyCase solid_bend(FormulationMesh const& mesh) {
 }
 
 void add_bend(Formulations& to) {
-  std::vector<double> const steps{4.0, 2.0, 1.0, 0.5, 0.25};
+  std::vector<double> const steps{8.0, 4.0, 2.0, 1.0, 0.5, 0.25};
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, bend<Lrvf<>>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, bend<AncfBeam<ElasticLine>>);

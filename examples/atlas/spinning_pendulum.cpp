@@ -23,7 +23,7 @@ AnyCase pendulum(FormulationMesh const& mesh) {
 }
 
 void add(Formulations& to) {
-  std::vector<double> const steps{8e-3, 4e-3, 2e-3, 1e-3, 5e-4};
+  std::vector<double> const steps{1.6e-2, 8e-3, 4e-3, 2e-3, 1e-3, 5e-4};
   std::vector<Index> const cubic{4, 8, 16, 32, 64}, linear{8, 16, 32, 64, 128};
   using Green = AncfCable<GreenStrain>;
   using Engineering = AncfCable<EngineeringStrain>;
