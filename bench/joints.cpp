@@ -40,7 +40,9 @@ B body(Bar const& bar) {
 template <class P, class B, class G, class... Ps>
 Chain<B, G, Ps...> chain(Chain<B, G, Ps...> const&, P const& policy, int links, bool pinned = true) {
   Chain<B, G, Ps...> model{Gravity{0, -9.81, 0}};
-  Joint<G, P> const pin{G{}, policy};
+  G geometry;
+  if constexpr (std::is_same_v<G, Revolute>) geometry.axis = Vec3::UnitZ();
+  Joint<G, P> const pin{geometry, policy};
   std::optional<BodyHandle<B>> before;
   for (int i = 0; i < links; ++i) {
     auto const link = model.add(body<B>({.length = 0.1,
