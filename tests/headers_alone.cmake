@@ -4,7 +4,8 @@
 # compiled after the highest of these precompiled headers among its own includes. Missing includes are still found: a
 # header gets only a precompiled header that it includes itself.
 #
-# POLYBODY_HEADERS_ALONE=K/N takes every N-th header, the K-th first, and those that the last 30 commits changed.
+# POLYBODY_HEADERS_ALONE=K/N takes every N-th header, the K-th first, and those in which the last 30 commits changed a
+# line that is not a comment.
 set(POLYBODY_HEADERS_ALONE all CACHE STRING "Headers that are compiled alone: all, or K/N for every N-th")
 set(headers_alone_before polybody/math/types.hpp polybody/system/system.hpp) # the higher, the later
 
@@ -49,7 +50,7 @@ function(headers_in_turn headers out)
   set(first ${CMAKE_MATCH_1})
   set(every ${CMAKE_MATCH_2})
   execute_process(
-    COMMAND git diff --name-only --relative=include HEAD~30 -- include
+    COMMAND git diff --name-only -G "^ *[^/ ]" --relative=include HEAD~30 -- include
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     OUTPUT_VARIABLE changed
     ERROR_QUIET)
