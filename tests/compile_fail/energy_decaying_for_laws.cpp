@@ -1,4 +1,4 @@
-// refused: supports the policies Constraint, Penalty and Bushing
+// refused: support the policies Constraint, Penalty and Bushing
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/joints/planar/joints.hpp>

@@ -1,4 +1,4 @@
-// refused: does not support policies that eliminate coordinates
+// refused: do not support policies that eliminate coordinates
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/joints/planar/joints.hpp>
