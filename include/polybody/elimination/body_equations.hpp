@@ -51,7 +51,7 @@ class BodyEquationsOf {
   Index velocities() const { return velocities_; }
   /// Indices, in the model, of the constraint equations of joints with joint coordinates.
   Sequence<Index> const& eliminated_equations() const { return carrying_rows_; }
-  /// Index of the full unknown of each equation.
+  /// For each reduced equation: index of its unknown among the full unknowns.
   Sequence<Index> full_unknowns() const {
     Sequence<Index> out(std::size_t(size()), -1);
     for (Index i = Index(of_.size()); i-- > 0;)

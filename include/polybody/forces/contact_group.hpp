@@ -36,7 +36,7 @@ class ContactGroup {
     std::string name;  ///< name of the partner in messages and results
   };
 
-  /// Sets the number `count` of the many markers, which are the first markers of the group. Called by the model.
+  /// Sets the number of the many markers. They are the first `count` markers of the group. Called by the model.
   void set_many(Index count) { many_ = count; }
   Index many() const { return many_; }  ///< number of the many markers
   /// Number of partners.

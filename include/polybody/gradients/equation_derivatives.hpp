@@ -63,9 +63,9 @@ using ValuesAtPlaces = std::array<double, 4>;
 
 /// Check of a group of parameters (members) that are perturbed together in four models. The owner of an equation is the
 /// member whose `affects` names the object of the equation. An equation without an owner must not change; any other
-/// equation must change with its owner only. Each member has another order of the difference points, so the
-/// contribution of a second member is not linear in the difference points of the owner. Curvature of an equation has
-/// the same effect, so a deviation does not prove a dependence.
+/// equation must change with its owner only. The four models use the difference points of each member in a different
+/// order. So if a second member also changes an equation, its values are not linear in the difference points of the
+/// owner. Curvature of an equation has the same effect, so a deviation does not prove a dependence.
 class SharedEquations {
  public:
   static constexpr std::size_t nobody = std::size_t(-1);  ///< owner of an equation that has no owner

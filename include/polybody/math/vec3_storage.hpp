@@ -31,7 +31,7 @@ class Vec3Storage<4> {
     std::memcpy(&x, m.data() + (i < 2 ? 3 * i : 5), sizeof x);  // the last register ends at the end of the matrix
     return {i < 2 ? x : __builtin_shufflevector(x, x, 1, 2, 3, 3)};
   }
-  /// Linear combination x c₀ + y c₁ + z c₂ with three factors c.
+  /// Linear combination x c₀ + y c₁ + z c₂; `c` points to the three factors.
   static Vec3Storage combination(Vec3Storage const& x, Vec3Storage const& y, Vec3Storage const& z, double const* c) {
     return {x.x_ * c[0] + y.x_ * c[1] + z.x_ * c[2]};
   }

@@ -76,9 +76,9 @@ class RmsDifference {
   /// Relative difference [1]. \throws InvalidInput if no sample was compared, or if b is zero in all of them.
   double value() const {
     if (samples_ == 0)
-      throw InvalidInput(
-          "samples.too_few",
-          {ErrorObject{"RmsDifference"}, ": no sample of both histories lies between ", from_, " s and ", to_, " s."});
+      throw InvalidInput("samples.too_few",
+                         {ErrorObject{"RmsDifference"}, ": the second history has no sample between ", from_, " s and ",
+                          to_, " s within the times of the first."});
     if (all_ == 0.0)
       throw InvalidInput("samples.zero", {ErrorObject{"RmsDifference"}, ": the reference history is zero at all ",
                                           samples_, " samples, so a relative difference does not exist."});

@@ -238,13 +238,13 @@ std::string told(Spoil&& spoil) {
 
 TEST(MatrixStructure, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(has(told([](Block& b) { b.nodes.clear(); }), "no nodes"));
-  EXPECT_TRUE(has(told([](Block& b) { b.nodes[7][1] = std::nan(""); }), "node 7 is not finite"));
+  EXPECT_TRUE(has(told([](Block& b) { b.nodes[7][1] = std::nan(""); }), "node 7, counted from 0, is not finite"));
   EXPECT_TRUE(has(told([](Block& b) { b.nodes.pop_back(); }),
                   "mass matrix is 36×36, but 11 nodes with three displacements each need 33×33"));
   EXPECT_TRUE(has(told([](Block& b) { b.stiffness.conservativeResize(35, 36); }), "stiffness matrix is 35×36"));
   EXPECT_TRUE(has(told([](Block& b) { b.mass(4, 7) = INFINITY; }),
                   "not finite in row 4 (y of node 1), column 7 (y of node 2)"));
-  EXPECT_TRUE(has(told([](Block& b) { b.nodes[7][1] = 1e200; }), "node 7 is 1e+200, beyond 1e+150"));
+  EXPECT_TRUE(has(told([](Block& b) { b.nodes[7][1] = 1e200; }), "node 7, counted from 0, is 1e+200, beyond 1e+150"));
   EXPECT_TRUE(
       has(told([](Block& b) { b.stiffness *= 1e200; }), ", beyond 1e+150, the largest allowed magnitude, in row 0"));
   EXPECT_TRUE(has(told([](Block& b) {

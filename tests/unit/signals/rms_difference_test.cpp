@@ -87,7 +87,7 @@ TEST(RmsDifference, RefusesWhatCannotBeCompared) {
   EXPECT_TRUE(has(refusal([&] { d.add(b, back); }), "times must increase, but t = 0.2 s follows 0.2 s"));
   EXPECT_TRUE(has(refusal([&] { d.add(wild, b); }), "sample 4 at t = 0.4 s is not finite"));
   d.add(b, b);
-  EXPECT_TRUE(has(refusal([&] { (void)d.value(); }), "no sample of both histories lies between 2 s and 3 s"));
+  EXPECT_TRUE(has(refusal([&] { (void)d.value(); }), "no sample between 2 s and 3 s within the times of the first"));
   zero.add(b, sampled(1.0, 10, [](double) { return 0.0; }));
   EXPECT_TRUE(has(refusal([&] { (void)zero.value(); }), "is zero"));
 }

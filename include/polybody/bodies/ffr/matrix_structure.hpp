@@ -196,7 +196,8 @@ Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& s
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))
         throw InvalidInput("value.not_finite",
-                           {ErrorObject{"Structure"}, ": node ", i, non_finite_suffix(x), ". Give x, y, z in metres."});
+                           {ErrorObject{"Structure"}, ": a coordinate of node ", i, ", counted from 0,",
+                            non_finite_suffix(x), " but must be a length in metres."});
   Structure s;
   s.per_node = 3;
   s.nodes = nodes;

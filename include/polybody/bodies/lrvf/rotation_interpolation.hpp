@@ -120,9 +120,9 @@ concept RotationInterpolation =
 /// change. The relative rotation of the nodes of an element must be less than π. The rotation of the whole body is not
 /// limited.
 ///
-/// In the middle all quantities are algebraic in c = tan(|φ|/4) n, n = φ/|φ|  (Wiener–Milenković):
+/// At ξ = ½, with c = tan(|φ|/4) n, n = φ/|φ| (Wiener–Milenković), and a, m of `ArctanSeries`:
 ///   δθ = ½ (δθ₁ + δθ₂) + ½ c × (δθ₂ − δθ₁),
-///   δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁,  Jr⁻¹(±φ) = 1 ± 2a c̃ + h c̃²,  h = a + m  (`ArctanSeries`),
+///   δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁,  Jr⁻¹(±φ) = 1 ± 2a c̃ + h c̃²,  h = a + m,
 ///   δc = G δθ₂ − Gᵀ δθ₁,  G = ¼ ((1 − c²) 1 + 2 c̃ + 2 c cᵀ).
 class RelativeRotation {
  public:

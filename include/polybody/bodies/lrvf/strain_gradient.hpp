@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Derivatives of the maps P and Q of a section by dual numbers, for rotation interpolations without closed forms.
+/// Derivatives of the strains of a section with respect to its nodes (maps P and Q of `StrainSection`) by dual numbers,
+/// for rotation interpolations without closed forms.
 
 #include <array>
 
