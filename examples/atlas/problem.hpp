@@ -47,19 +47,6 @@ struct Settings {
   std::vector<double> steps;
 };
 
-// A formulation of EqualErrorStudy. Its types and its mesh select names and axes; `make` creates the mechanism.
-template <class B, class P, MeshKind kind>
-struct AtlasFormulation {
-  using BodyType = B;
-  using PolicyType = P;
-  using IntegratorType = GeneralisedAlpha;
-  static constexpr bool has_mesh = kind != MeshKind::none, has_modes = kind == MeshKind::modes;
-  std::string name;
-  GeneralisedAlpha integrator;
-  FormulationMesh mesh;
-  MakeCase make;
-};
-
 // Output and duration of a problem.
 struct Question {
   std::string output;  // name with unit
@@ -82,9 +69,10 @@ class Formulations {
   template <class B, MeshKind kind = MeshKind::elements, class P = Constraint>
   void add(std::string const& name, std::string const& model, Settings const& settings, MakeCase const& make,
            Index elements = 16) {
-    AtlasFormulation<B, P, kind> const formulation{name, {.rho_inf = question_.rho_inf}, {.elements = elements}, make};
-    auto const make_case = [q = question_](auto const& f) {
-      AnyCase const made = f.make(f.mesh);
+    combinations::ErasedFormulation<GeneralisedAlpha, kind, B, P> const formulation{
+        name, {.rho_inf = question_.rho_inf}, {.elements = elements}};
+    auto const make_case = [q = question_, make](auto const& f) {
+      AnyCase const made = make(f.mesh);
       return Scenario<AnyModel>{made.model,
                                 made.start,
                                 {.end_time = q.end_time, .step = 1.0, .max_step_halvings = 6},

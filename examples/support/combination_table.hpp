@@ -106,11 +106,13 @@ bool run_ten_steps(CombinationTable const& table, std::function<Steps(Choice con
 
 using MakeScenario = std::function<Scenario<AnyModel>(FormulationMesh const&)>;
 
-// A formulation of EqualErrorStudy whose types of body and policy are erased.
-template <class I, MeshKind kind>
+struct Erased {};
+// A formulation of EqualErrorStudy for a mechanism that a function of the mesh creates. Body B and policy P select
+// names and colours only.
+template <class I, MeshKind kind, class B = Erased, class P = Erased>
 struct ErasedFormulation {
-  struct BodyType {};
-  using PolicyType = BodyType;
+  using BodyType = B;
+  using PolicyType = P;
   using IntegratorType = I;
   static constexpr bool has_mesh = kind != MeshKind::none, has_modes = kind == MeshKind::modes;
   std::string name;
