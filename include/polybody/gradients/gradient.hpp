@@ -261,9 +261,9 @@ class AdjointRun {
 /// of different sizes; if a parameter changes equations of an object outside its `affects`; if the run has no step; if
 /// an event only touches zero or remains zero; if two events coincide, or other times coincide so that the run is not
 /// differentiable. With a Runge–Kutta method, InvalidInput is also thrown for events, breakpoints, and times that
-/// depend on a parameter. In a run with start correction and with none of these three, it is also thrown if the
-/// correction depends on a parameter or if the steps have different lengths. \throws SingularMatrix
-/// in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
+/// depend on a parameter. A run without events, breakpoints and such times can have a start correction. InvalidInput is
+/// then also thrown if the correction depends on a parameter or if the steps have different lengths. \throws
+/// SingularMatrix in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {
