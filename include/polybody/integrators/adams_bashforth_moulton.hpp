@@ -22,9 +22,10 @@ class AdamsHistory {
 
   /// Resets `memory` to order 1 and a single point, the present one, with y˙ = f.
   static void reset(VecX& memory, VecX const& f) {
-    memory.setZero((highest + 1) * f.size() + highest + 3);
-    memory.head(f.size()) = f;
-    memory.tail<3>().setOnes();
+    memory.resize((highest + 1) * f.size() + highest + 3);
+    std::fill_n(memory.data(), memory.size() - 3, 0.0);
+    std::copy_n(f.data(), f.size(), memory.data());
+    std::fill_n(memory.data() + memory.size() - 3, 3, 1.0);
   }
 
   /// Access to the history in the `memory` of a state for y of n entries. `reset` must have been called for `memory`.

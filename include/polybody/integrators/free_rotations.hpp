@@ -19,12 +19,12 @@
 namespace polybody::detail {
 
 /// Rigid bodies with the generalised velocities (ṙ, Ω), and their inertia tensors J. The functions change only the
-/// entries of Ω of these bodies.
+/// entries of Ω of these bodies. A template, because programs that do not use it then compile faster.
+template <class = void>
 class FreeRotations {
  public:
   /// Reads J from the mass matrix. Bodies with a singular J or a variable mass are omitted. If policies eliminate
   /// coordinates of the model, all bodies are omitted.
-  template <class = void>
   [[gnu::cold]] explicit FreeRotations(System& system) {
     if (system.step_coordinates()) return;
     UnknownPlaces const places = full_places(system.layout());
@@ -142,7 +142,7 @@ class FreeRotations {
 /// Memory of an explicit step with free rotations.
 template <class Solver>
 struct RotatingStep : ExplicitStep<Solver> {
-  FreeRotations rotations;
+  FreeRotations<> rotations;
   VecX applied;  ///< v̇ at the start of a step, with J⁻¹ m in place of Ω˙
 
   explicit RotatingStep(System& s) : ExplicitStep<Solver>(s), rotations(s), applied(this->v) {}

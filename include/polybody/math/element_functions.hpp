@@ -57,26 +57,16 @@ constexpr LegendreValue legendre(int n, double x) {
   return {now, n * (before - x * now) / (1.0 - x * x)};
 }
 
-/// Roots of the Legendre polynomial P_n. The roots of P_{n−1} and the ends ±1 bracket each root. Bisection of the
-/// bracket yields the initial value for Newton's method.
+/// Roots of the Legendre polynomial P_n in ascending order, by Newton's method. The initial values
+/// −cos(π (i + 3/4)/(n + 1/2)) [Abramowitz & Stegun 22.16.6] are computed as a sine, by its series.
 template <int n>
 constexpr std::array<double, n> legendre_roots() {
   std::array<double, n> roots{};
   if constexpr (n > 1) {
-    constexpr auto fence = legendre_roots<n - 1>();
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      double lo = i == 0 ? -1.0 + 1e-12 : fence[i - 1];
-      double hi = i + 1 == roots.size() ? 1.0 - 1e-12 : fence[i];
-      bool const rising = legendre(n, hi).p > 0.0;
-      for (int k = 0; k < 8; ++k) {
-        double const mid = 0.5 * (lo + hi);
-        if ((legendre(n, mid).p > 0.0) == rising)
-          hi = mid;
-        else
-          lo = mid;
-      }
-      double x = 0.5 * (lo + hi);
-      for (int k = 0; k < 5; ++k) {  // the initial error is below 1/256 of the bracket
+      double const angle = 3.14159265358979 * ((double(i) + 0.75) / (n + 0.5) - 0.5), square = angle * angle;
+      double x = angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)));
+      for (int k = 0; k < 5; ++k) {
         LegendreValue const f = legendre(n, x);
         x -= f.p / f.dp;
       }
