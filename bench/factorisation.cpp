@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/eigen_sparse_lu.hpp>

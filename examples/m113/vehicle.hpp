@@ -2,7 +2,6 @@
 /// \file
 /// Model of the vehicle of data.hpp with a selectable formulation of its tracks.
 
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 

@@ -47,7 +47,6 @@
 #include <polybody/forces/springs.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
@@ -59,15 +58,12 @@
 #include <polybody/io/plot.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/io/run_table.hpp>
-#include <polybody/io/surface.hpp>
 #include <polybody/io/visual.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/joints/nonholonomic.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/monotone_table.hpp>
 #include <polybody/math/smooth_table.hpp>
@@ -87,7 +83,7 @@
 #include <polybody/run/simulate.hpp>
 #include <polybody/run/sliders.hpp>
 #include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/iterative_refinement.hpp>
 #include <polybody/statics/arc_length.hpp>

@@ -9,5 +9,4 @@
 #include <polybody/study/limited_point.hpp>
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
-#include <polybody/study/statistics.hpp>
 #include <polybody/study/study.hpp>

@@ -5,7 +5,6 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>

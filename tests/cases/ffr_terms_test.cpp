@@ -10,7 +10,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 
 #include "support/held.hpp"
 

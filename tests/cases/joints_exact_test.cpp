@@ -7,7 +7,6 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/driving_constraints.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/run/probe.hpp>

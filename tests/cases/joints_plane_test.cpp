@@ -8,7 +8,7 @@
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -9,7 +9,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 
 #include "support/linkages.hpp"
 #include "support/refusal.hpp"

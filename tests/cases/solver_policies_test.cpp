@@ -7,7 +7,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/iterative_refinement.hpp>
 

@@ -2,7 +2,7 @@
 // Distance does not name its free directions.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/elimination.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

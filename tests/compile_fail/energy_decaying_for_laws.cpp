@@ -2,7 +2,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
+#include <polybody/joints/policies/bushing.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;

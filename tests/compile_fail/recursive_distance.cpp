@@ -1,7 +1,7 @@
 // refused: JointCoordinates needs a joint whose motion has coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/elimination.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

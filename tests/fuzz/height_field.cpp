@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <polybody/vehicle/height_field.hpp>
+#include <polybody/vehicle/terrain.hpp>
 
 #include "fuzz/target.hpp"
 

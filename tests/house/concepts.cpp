@@ -26,11 +26,10 @@
 #include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/policies/policy.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/smooth_table.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/redundancy_dropping.hpp>

@@ -2,7 +2,6 @@
 /// \file Euler's columns (S9e) and a strip under a force in its stiff plane (S9d): buckling loads of rods, and the
 /// bent equilibrium after buckling.
 
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include "support/buckling.hpp"

@@ -5,7 +5,6 @@
 #include <polybody/gradients/objective.hpp>
 #include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/policies/policy.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 

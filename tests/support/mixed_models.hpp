@@ -12,7 +12,6 @@
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/system.hpp>
 #include <polybody/testing/differences.hpp>

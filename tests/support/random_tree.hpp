@@ -5,7 +5,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/policies/elimination.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>
 

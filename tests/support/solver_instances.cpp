@@ -1,4 +1,4 @@
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-#include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/integrator.hpp>
 #include <polybody/integrators/unknown_kinds.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/so3.hpp>

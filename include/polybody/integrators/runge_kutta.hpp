@@ -7,7 +7,7 @@
 #include <complex>
 
 #include <polybody/integrators/error_tolerance.hpp>
-#include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/integrator.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 #include <polybody/math/compiler.hpp>
 

@@ -5,7 +5,6 @@
 
 #include <ostream>
 
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/run/observe.hpp>

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include <polybody/math/errors.hpp>
-#include <polybody/run/event.hpp>
 #include <polybody/run/run_options.hpp>
 
 namespace polybody {

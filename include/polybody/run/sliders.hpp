@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/shared/with_sliders.hpp>
 #include <polybody/kinematics/marker.hpp>
-#include <polybody/run/event.hpp>
+#include <polybody/run/run_options.hpp>
 
 namespace polybody {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Block factorisation of the saddle-point matrix [A, Gᵀ; G, 0]. The elimination order and the positions of the fill
-/// are computed once. Each factorisation runs through a flat list of block operations without search, allocation or
-/// pivoting between blocks.
+/// Block factorisation of the saddle-point matrix [A, Gᵀ; G, 0], and its solvers by symmetry: `BlockLu`, `BlockSolver`
+/// and `BlockLdlt`. The elimination order and the positions of the fill are computed once. Each factorisation runs
+/// through a flat list of block operations without search, allocation or pivoting between blocks.
 ///
 /// A node is a set of unknowns that are eliminated together. Its rows are stored as U = [D | W], where D is its
 /// diagonal block and W its blocks with later nodes. Its blocks below D are stored transposed, as Lt. D is factorised
@@ -361,6 +361,16 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   }
   for (Index i = 0; i < size_; ++i) x[i] = w[place[i]];
 }
+
+/// Block LU factorisation in the elimination order of `BlockLdlt`, for unsymmetric tangents.
+using BlockLu = BlockFactor<Symmetry::none>;
+/// Block LU factorisation that does half the work if the matrix is symmetric.
+using BlockSolver = BlockFactor<Symmetry::measured>;
+
+/// Block LDLᵀ factorisation of a symmetric matrix; the half below the diagonal is not read. The tangent is unsymmetric
+/// with friction, or with damping of rotating flexible bodies. `BlockLdlt` then factorises a wrong matrix, and
+/// Newton's method converges slowly. `BlockSolver` reads both halves and measures the asymmetry.
+using BlockLdlt = BlockFactor<Symmetry::assumed>;
 
 }  // namespace polybody
 

@@ -3,7 +3,7 @@
 /// Default linear solvers. Some tests replace this header (tests/named_solver).
 
 #include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 
 namespace polybody {
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include <polybody/math/sequence.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 
 namespace polybody {
 

@@ -16,7 +16,6 @@
 #include <polybody/system/composition.hpp>
 #include <polybody/system/linear_constraints.hpp>
 #include <polybody/system/markers.hpp>
-#include <polybody/system/names.hpp>
 
 namespace polybody::detail {
 

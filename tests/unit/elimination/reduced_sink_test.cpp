@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/elimination/reduced_sink.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
 #include <random>

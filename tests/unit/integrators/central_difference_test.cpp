@@ -1,4 +1,4 @@
-#include <polybody/integrators/central_difference.hpp>
+#include <polybody/integrators/symplectic.hpp>
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>

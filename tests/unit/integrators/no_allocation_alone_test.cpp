@@ -13,7 +13,6 @@
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
@@ -22,7 +21,6 @@
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/elimination.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/integrators/symplectic.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
 #include "support/held.hpp"

@@ -7,7 +7,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/forces/user_force.hpp>
-#include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>

@@ -1,6 +1,5 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>

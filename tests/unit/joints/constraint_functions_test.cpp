@@ -1,7 +1,6 @@
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/constraint_functions.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include <polybody/joints/driving_constraints.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // The requirements on policies with a force law, applied to the policies of the library.
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 
 #include <gtest/gtest.h>

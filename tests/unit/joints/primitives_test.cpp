@@ -1,4 +1,3 @@
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/joints/standard_joints.hpp>
 

@@ -6,7 +6,7 @@
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/probe.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/system/model.hpp>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include <polybody/run/step_plan.hpp>
+#include <polybody/run/run_snapshot.hpp>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,6 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include <polybody/solvers/block_lu.hpp>
-
 #include "support/blocks.hpp"
 
 using namespace polybody;

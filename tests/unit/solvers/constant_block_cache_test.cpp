@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 
 #include "support/blocks.hpp"

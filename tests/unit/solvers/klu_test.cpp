@@ -1,6 +1,6 @@
 // SuiteSparse's KLU; this file is built if KLU is installed.
 
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/klu.hpp>
 
 #include <polybody/testing/linear_solver_laws.hpp>

@@ -1,7 +1,7 @@
 // All linear solvers on the same matrices, and the sinks that fill them.
 
 #include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 #include <polybody/solvers/iterative_refinement.hpp>
 
 #include <polybody/testing/linear_solver_laws.hpp>

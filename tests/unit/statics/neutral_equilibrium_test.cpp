@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>

@@ -10,9 +10,9 @@
 #include <random>
 
 #include <polybody/study/limited_point.hpp>
+#include <polybody/study/outcome.hpp>
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
-#include <polybody/study/statistics.hpp>
 #include <polybody/study/study.hpp>
 
 #include "support/refusal.hpp"

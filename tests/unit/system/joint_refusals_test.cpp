@@ -5,7 +5,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/standard_joints.hpp>

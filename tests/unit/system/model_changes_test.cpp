@@ -5,7 +5,6 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/io/surface.hpp>
 #include <polybody/io/visual.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/any_model.hpp>

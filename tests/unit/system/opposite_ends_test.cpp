@@ -3,7 +3,6 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/policy.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/model.hpp>

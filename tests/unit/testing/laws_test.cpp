@@ -5,7 +5,7 @@
 #include <polybody/forces/springs.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include <polybody/vehicle/height_field.hpp>
 #include <polybody/vehicle/terrain.hpp>
 
 #include <gtest/gtest.h>

@@ -10,7 +10,6 @@
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/joints.hpp>
-#include <polybody/joints/primitives.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

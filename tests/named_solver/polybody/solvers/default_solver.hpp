@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <polybody/solvers/auto_lu.hpp>
-#include <polybody/solvers/block_lu.hpp>
+#include <polybody/solvers/block_factor.hpp>
 
 namespace polybody {
 

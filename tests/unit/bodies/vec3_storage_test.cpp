@@ -1,4 +1,4 @@
-#include <polybody/math/vec3_storage.hpp>
+#include <polybody/bodies/rigid/rigid_marker.hpp>
 
 #include <gtest/gtest.h>
 
