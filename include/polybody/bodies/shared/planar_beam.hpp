@@ -274,8 +274,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     Theory::rotation_hessian(p.xi, l_, x, k);
     double const moment = w.m[2] - p.y * (c * w.f[0] + s * w.f[1]), normal = p.y * (c * w.f[1] - s * w.f[0]);
     for (int j = 0; j < element_columns; ++j)
-      for (int i = 0; i < element_columns; ++i)
-        k(i, j) = k(i, j) * moment - normal * turned.row[i] * turned.row[j];
+      for (int i = 0; i < element_columns; ++i) k(i, j) = k(i, j) * moment - normal * turned.row[i] * turned.row[j];
   }
 
   /// Section strains as a vector of six (`HasSections`). Components that the theory does not have are zero.
@@ -297,7 +296,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
  private:
-  Beam(Bar const& bar, BarConstants const& c, Index n)
+  [[gnu::cold]] Beam(Bar const& bar, BarConstants const& c, Index n)
       : Chain(n, {Groups::make(c, bar, bar.length / double(n))}),
         constants_(c),
         length_(bar.length),
