@@ -63,25 +63,27 @@ struct HermiteCable {
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
-    Mat<T, 2, 8> const d = gradient<T>(xi, l);
-    Vec<T, 2> const slope = d * e, rate = d * ed;
-    T const n2 = slope.squaredNorm();
+    Mat<double, 2, 8> const d = gradient(xi, l);
+    Vec<T, 2> const slope = detail::times(d, e), rate = detail::times(d, ed);
+    T const n2 = slope[0] * slope[0] + slope[1] * slope[1], along = slope[0] * rate[0] + slope[1] * rate[1];
     SectionAngle<T, 8> out;
     out.angle = atan2(slope[1], slope[0]);
-    out.row = (d.row(1).transpose() * slope[0] - d.row(0).transpose() * slope[1]) / n2;
-    out.bias = out.row.dot(ed) * slope.dot(rate) * (-2.0) / n2;
+    for (int i = 0; i < 8; ++i) out.row[i] = (slope[0] * d(1, i) - slope[1] * d(0, i)) / n2;
+    out.bias = out.row.dot(ed) * along * (-2.0) / n2;
     return out;
   }
 
   /// Hessian h = ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
   template <class T>
   static void rotation_hessian(double xi, double l, Vec<T, 8> const& e, Mat<T, 8, 8>& h) {
-    Mat<T, 2, 8> const d = gradient<T>(xi, l);
-    Vec<T, 2> const slope = d * e;
-    T const x = slope[0], y = slope[1], n4 = std::pow(slope.squaredNorm(), 2);
-    Mat<T, 2, 2> of_slope;
-    of_slope << 2.0 * x * y, y * y - x * x, y * y - x * x, -2.0 * x * y;
-    h = d.transpose() * (of_slope / n4) * d;
+    Mat<double, 2, 8> const d = gradient(xi, l);
+    Vec<T, 2> const slope = detail::times(d, e);
+    T const x = slope[0], y = slope[1], n4 = (x * x + y * y) * (x * x + y * y);
+    T const across = 2.0 * x * y / n4, along = (y * y - x * x) / n4;
+    for (int i = 0; i < 8; ++i) {
+      T const a = d(0, i) * across + d(1, i) * along, b = d(0, i) * along - d(1, i) * across;
+      for (int j = 0; j < 8; ++j) h(i, j) = a * d(0, j) + b * d(1, j);
+    }
   }
 
   using Axial = CableAxial<Strain, axial_points, 2>;  ///< the law of axial strain

@@ -29,6 +29,15 @@ struct GroupsOf<std::tuple<Laws...>> {
   }
 };
 
+/// Product s e of a matrix s (2×n) and a vector e (n). Loops compile faster than expressions of Eigen.
+template <class T, int n>
+Vec<T, 2> times(Mat<double, 2, n> const& s, Vec<T, n> const& e) {
+  Vec<T, 2> r(e[0] * s(0, 0), e[0] * s(1, 0));
+  for (int j = 1; j < n; ++j)
+    for (int i = 0; i < 2; ++i) r[i] += e[j] * s(i, j);
+  return r;
+}
+
 }  // namespace polybody::detail
 
 namespace polybody::planar {
@@ -174,15 +183,19 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
-    out = (gravity_ * g.head<2>()).template cast<T>();
+    for (int i = 0; i < element_columns; ++i) out[i] = T(weight(i, g));
   }
 
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    auto const x = part<element_columns>(v, first_column(e));
-    return 0.5 * x.dot(mass_ * x);
+    Element<double> const x = this->of_element(e, v);
+    Element<double> momentum;
+    element_inertia<double>(x, momentum);
+    return 0.5 * x.dot(momentum);
   }
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
-    return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
+    Element<double> force;
+    gravity<double>(e, q, g, force);
+    return -this->of_element(e, q).dot(force);
   }
 
   /// Matrix S of r = S e at `p`, 2×n and constant. The coordinates e begin at `first_column(p)`.
@@ -207,10 +220,10 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   template <StateScalar T>
   CentreLine<T> centre_line(Point const& p, std::span<T const> q, std::span<T const> v) const {
     Element<T> const x = this->of_element(p.element, q), xd = this->of_element(p.element, v);
-    Mat<double, 2, element_columns> const n = Theory::position(p.xi, l_);
+    PointMap const s = Theory::position(p.xi, l_);
     CentreLine<T> c;
-    c.r = n.template cast<T>() * x;
-    c.v = n.template cast<T>() * xd;
+    c.r = detail::times(s, x);
+    c.v = detail::times(s, xd);
     auto const turned = Theory::template rotation<T>(p.xi, l_, x, xd);
     c.angle = turned.angle;
     c.rate = turned.row.dot(xd);
@@ -225,23 +238,29 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
                        MarkerKinematics<T>& out) const {
     using std::cos, std::sin;
     Element<T> const x = this->of_element(p.element, q), xd = this->of_element(p.element, v);
-    Mat<double, 2, element_columns> const shape = Theory::position(p.xi, l_);
+    PointMap const shape = Theory::position(p.xi, l_);
     auto const [angle, row, rate_bias] = Theory::template rotation<T>(p.xi, l_, x, xd);
     T const c = cos(angle), s = sin(angle), rate = row.dot(xd);
-    Vec<T, 2> const t(c, s), n(-s, c);
-    Mat<T, 3, 3> a;
-    a << c, -s, T(0), s, c, T(0), T(0), T(0), T(1);
-    out.frame.A = a * axes.template cast<T>();
-    out.frame.r << shape.template cast<T>() * x + n * p.y, T(0);
-    out.frame.v << shape.template cast<T>() * xd - t * (rate * p.y), T(0);
-    out.frame.w << T(0), T(0), rate;
-    out.bias.setZero();
-    out.bias.template head<2>() = (t * rate_bias + n * (rate * rate)) * (-p.y);
-    out.bias[5] = rate_bias;
+    Vec<T, 2> const t(c, s), n(-s, c), r = detail::times(shape, x), v0 = detail::times(shape, xd);
     Eigen::Map<Mat<T, 6, element_columns>> j(out.jacobian);
     j.setZero();
-    j.template topRows<2>() = shape.template cast<T>() - (t * p.y) * row.transpose();
-    j.row(5) = row.transpose();
+    out.bias.setZero();
+    for (int i = 0; i < 2; ++i) {
+      out.frame.r[i] = r[i] + n[i] * p.y;
+      out.frame.v[i] = v0[i] - t[i] * (rate * p.y);
+      out.frame.w[i] = T(0);
+      out.bias[i] = (t[i] * rate_bias + n[i] * (rate * rate)) * (-p.y);
+      for (int k = 0; k < element_columns; ++k) j(i, k) = shape(i, k) - (t[i] * p.y) * row[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      out.frame.A(0, k) = c * axes(0, k) - s * axes(1, k);
+      out.frame.A(1, k) = s * axes(0, k) + c * axes(1, k);
+      out.frame.A(2, k) = T(axes(2, k));
+    }
+    out.frame.r[2] = out.frame.v[2] = T(0);
+    out.frame.w[2] = rate;
+    out.bias[5] = rate_bias;
+    for (int k = 0; k < element_columns; ++k) j(5, k) = row[k];
     out.shape = JacobianShape::dense;
     out.columns = element_columns;
   }
@@ -253,8 +272,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     SectionAngle<double, element_columns> const turned = Theory::template rotation<double>(p.xi, l_, x, rest);
     double const c = std::cos(turned.angle), s = std::sin(turned.angle);
     Theory::rotation_hessian(p.xi, l_, x, k);
-    k *= w.m[2] - p.y * (c * w.f[0] + s * w.f[1]);
-    k -= (p.y * (c * w.f[1] - s * w.f[0])) * turned.row * turned.row.transpose();
+    double const moment = w.m[2] - p.y * (c * w.f[0] + s * w.f[1]), normal = p.y * (c * w.f[1] - s * w.f[0]);
+    for (int j = 0; j < element_columns; ++j)
+      for (int i = 0; i < element_columns; ++i) k(i, j) = k(i, j) * moment - normal * turned.row[i] * turned.row[j];
   }
 
   /// Section strains as a vector of six (`HasSections`). Components that the theory does not have are zero.
@@ -276,7 +296,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
  private:
-  Beam(Bar const& bar, BarConstants const& c, Index n)
+  [[gnu::cold]] Beam(Bar const& bar, BarConstants const& c, Index n)
       : Chain(n, {Groups::make(c, bar, bar.length / double(n))}),
         constants_(c),
         length_(bar.length),
@@ -285,13 +305,21 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
         angle_(bar.placement.planar_angle(Theory::name)) {
     // M = ∫ (Aρ SᵀS + Iρ h hᵀ) dx with θ̇ = h·ė, gravity_ = Aρ ∫ Sᵀ dx; exact for the polynomials of the theory
     for (GaussPoint const& g : gauss<4>) {
-      Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
-      mass_ += g.weight * l_ * c.mass_per_length * s.transpose() * s;
+      PointMap const s = Theory::position(g.xi, l_);
       Element<double> const rot = Theory::rotary(g.xi, l_);
-      mass_ += g.weight * l_ * c.rotary_inertia * rot * rot.transpose();
-      gravity_ += g.weight * l_ * c.mass_per_length * s.transpose();
+      double const mass = g.weight * l_ * c.mass_per_length, inertia = g.weight * l_ * c.rotary_inertia;
+      for (int i = 0; i < element_columns; ++i) {
+        for (int j = 0; j < element_columns; ++j) {
+          mass_(i, j) += mass * (s(0, i) * s(0, j) + s(1, i) * s(1, j));
+          mass_(i, j) += inertia * rot[i] * rot[j];
+        }
+        for (int k = 0; k < 2; ++k) gravity_(i, k) += mass * s(k, i);
+      }
     }
   }
+
+  /// Entry i of the gravity force of an element.
+  double weight(int i, Vec3 const& g) const { return gravity_(i, 0) * g[0] + gravity_(i, 1) * g[1]; }
 
   /// Vector of six with the entries of all groups, at the rows `Theory::section_rows`.
   template <class F>
