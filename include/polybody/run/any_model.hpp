@@ -17,6 +17,12 @@ inline constexpr SteppedBy<Is...> stepped_by{};
 namespace detail {
 template <class I>
 inline constexpr char integrator_tag = 0;
+
+/// Capabilities for runs by each of the integrators Is, and for evaluations of states. All systems of an `AnyModel`
+/// have the same set, because each further set of a model takes time to compile.
+template <class... Is>
+inline constexpr Capabilities capabilities_for =
+    ((Capabilities::energy | Capabilities::rigid_velocities) | ... | (entries_of<Is>() | warned<Is>));
 }  // namespace detail
 
 /// Type-erased model for runs, comparisons and records. Functions that take an `AnyModel` are compiled once for all
@@ -31,8 +37,10 @@ class AnyModel {
   /// Stores the model, and functions that evaluate the model and step it with each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
-      : reference_(model->reference_state()), system_(&questions<M>), problem_size_(polybody::problem_size(*model)) {
-    (runs_.push_back({&detail::integrator_tag<Is>, &systems<Is, M>}), ...);
+      : reference_(model->reference_state()),
+        system_(&full_system<M, detail::capabilities_for<Is...>>),
+        problem_size_(polybody::problem_size(*model)) {
+    (runs_.push_back({&detail::integrator_tag<Is>, &systems<Is, M, detail::capabilities_for<Is...>>}), ...);
     model_ = std::move(model);
   }
 
@@ -57,13 +65,13 @@ class AnyModel {
     void const* integrator;
     RunSystems (*make)(void const*);
   };
-  template <class M>
-  [[gnu::cold]] static System questions(void const* model) {
-    return System(*static_cast<M const*>(model), with < Capabilities::energy | Capabilities::rigid_velocities >);
+  template <class M, Capabilities all>
+  [[gnu::cold]] static System full_system(void const* model) {
+    return System(*static_cast<M const*>(model), with<all>);
   }
-  template <class I, class M>
+  template <class I, class M, Capabilities all>
   [[gnu::cold]] static RunSystems systems(void const* model) {
-    return run_systems<I>(*static_cast<M const*>(model));
+    return run_systems<I, all>(*static_cast<M const*>(model), {&full_system<M, all>, model});
   }
 
   std::shared_ptr<void const> model_;

@@ -13,14 +13,20 @@ template <class I>
 inline constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
 }  // namespace detail
 
+/// Systems of a run of `model` by integrator I, with the capabilities that the run requires and those of `more`. The
+/// model must outlive the systems. `source` makes the systems for evaluations of the states.
+template <class I, Capabilities more, class M>
+[[gnu::cold]] RunSystems run_systems(M const& model, SystemSource const& source) {
+  constexpr Capabilities full = detail::warned<I> | more;
+  if constexpr (M::eliminates)
+    return {std::make_unique<System>(system_for<I, more>(model)), std::make_unique<System>(model, with<full>), source};
+  else
+    return {std::make_unique<System>(system_for<I, full>(model)), nullptr, source};
+}
 /// Systems of a run of `model` by integrator I. The model must outlive the systems.
 template <class I, class M>
-[[gnu::cold]] RunSystems run_systems(M const& model) {
-  if constexpr (M::eliminates)
-    return {std::make_unique<System>(system_for<I>(model)), std::make_unique<System>(model, with<detail::warned<I>>),
-            system_source(model)};
-  else
-    return {std::make_unique<System>(system_for<I, detail::warned<I>>(model)), nullptr, system_source(model)};
+RunSystems run_systems(M const& model) {
+  return run_systems<I, Capabilities::motion>(model, system_source(model));
 }
 
 /// Returns a run of `model` from x by `integrator`, as a range of states. The run updates x to the state at the end of

@@ -296,27 +296,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
  private:
-  [[gnu::cold]] Beam(Bar const& bar, BarConstants const& c, Index n)
-      : Chain(n, {Groups::make(c, bar, bar.length / double(n))}),
-        constants_(c),
-        length_(bar.length),
-        l_(bar.length / double(n)),
-        origin_(bar.placement.origin.head<2>()),
-        angle_(bar.placement.planar_angle(Theory::name)) {
-    // M = ∫ (Aρ SᵀS + Iρ h hᵀ) dx with θ̇ = h·ė, gravity_ = Aρ ∫ Sᵀ dx; exact for the polynomials of the theory
-    for (GaussPoint const& g : gauss<4>) {
-      PointMap const s = Theory::position(g.xi, l_);
-      Element<double> const rot = Theory::rotary(g.xi, l_);
-      double const mass = g.weight * l_ * c.mass_per_length, inertia = g.weight * l_ * c.rotary_inertia;
-      for (int i = 0; i < element_columns; ++i) {
-        for (int j = 0; j < element_columns; ++j) {
-          mass_(i, j) += mass * (s(0, i) * s(0, j) + s(1, i) * s(1, j));
-          mass_(i, j) += inertia * rot[i] * rot[j];
-        }
-        for (int k = 0; k < 2; ++k) gravity_(i, k) += mass * s(k, i);
-      }
-    }
-  }
+  [[gnu::cold]] Beam(Bar const& bar, BarConstants const& c, Index n);
 
   /// Entry i of the gravity force of an element.
   double weight(int i, Vec3 const& g) const { return gravity_(i, 0) * g[0] + gravity_(i, 1) * g[1]; }
@@ -388,5 +368,29 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   ElementMatrix mass_ = ElementMatrix::Zero();
   Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
 };
+
+// Defined outside of the class, so that a program with polybody::compiled does not compile it.
+template <class Theory>
+Beam<Theory>::Beam(Bar const& bar, BarConstants const& c, Index n)
+    : Chain(n, {Groups::make(c, bar, bar.length / double(n))}),
+      constants_(c),
+      length_(bar.length),
+      l_(bar.length / double(n)),
+      origin_(bar.placement.origin.head<2>()),
+      angle_(bar.placement.planar_angle(Theory::name)) {
+  // M = ∫ (Aρ SᵀS + Iρ h hᵀ) dx with θ̇ = h·ė, gravity_ = Aρ ∫ Sᵀ dx; exact for the polynomials of the theory
+  for (GaussPoint const& g : gauss<4>) {
+    PointMap const s = Theory::position(g.xi, l_);
+    Element<double> const rot = Theory::rotary(g.xi, l_);
+    double const mass = g.weight * l_ * c.mass_per_length, inertia = g.weight * l_ * c.rotary_inertia;
+    for (int i = 0; i < element_columns; ++i) {
+      for (int j = 0; j < element_columns; ++j) {
+        mass_(i, j) += mass * (s(0, i) * s(0, j) + s(1, i) * s(1, j));
+        mass_(i, j) += inertia * rot[i] * rot[j];
+      }
+      for (int k = 0; k < 2; ++k) gravity_(i, k) += mass * s(k, i);
+    }
+  }
+}
 
 }  // namespace polybody::planar
