@@ -11,9 +11,14 @@ template FrameIn frame_in(BodyHandle<AncfBeam<>> const&, Marker<AncfBeam<>> cons
 template void Visual::attach(Marker<AncfBeam<>> const&, Surface const&, std::string);
 template void Visual::sweep(BodyHandle<AncfBeam<>> const&, Bar const&, int, int);
 template Frame<double> frame(BodyInState<AncfCable<>> const&, AncfCable<>::Point const&);
+template Frame<double> frame(BodyInState<AncfCable<EngineeringStrain>> const&,
+                             AncfCable<EngineeringStrain>::Point const&);
 template FrameIn frame_in(BodyHandle<AncfCable<>> const&, Marker<AncfCable<>> const&);
+template FrameIn frame_in(BodyHandle<AncfCable<EngineeringStrain>> const&, Marker<AncfCable<EngineeringStrain>> const&);
 template void Visual::attach(Marker<AncfCable<>> const&, Surface const&, std::string);
+template void Visual::attach(Marker<AncfCable<EngineeringStrain>> const&, Surface const&, std::string);
 template void Visual::sweep(BodyHandle<AncfCable<>> const&, Bar const&, int, int);
+template void Visual::sweep(BodyHandle<AncfCable<EngineeringStrain>> const&, Bar const&, int, int);
 template Frame<double> frame(BodyInState<AncfBeam<Continuum<>>> const&, AncfBeam<Continuum<>>::Point const&);
 template FrameIn frame_in(BodyHandle<AncfBeam<Continuum<>>> const&, Marker<AncfBeam<Continuum<>>> const&);
 template void Visual::attach(Marker<AncfBeam<Continuum<>>> const&, Surface const&, std::string);

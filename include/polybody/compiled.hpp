@@ -30,7 +30,9 @@ extern template planar::Lrvf::Beam(Bar const&, BarConstants const&, Index);
 extern template struct BodyKernels<AncfBeam<>, double>;
 extern template AncfBeam<>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 extern template struct BodyKernels<AncfCable<>, double>;
+extern template struct BodyKernels<AncfCable<EngineeringStrain>, double>;
 extern template AncfCable<>::AncfCable(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
+extern template AncfCable<EngineeringStrain>::AncfCable(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
 extern template struct BodyKernels<AncfBeam<Continuum<>>, double>;
 extern template AncfBeam<Continuum<>>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 extern template struct BodyKernels<Lrvf<>, double>;
@@ -60,9 +62,15 @@ extern template FrameIn frame_in(BodyHandle<AncfBeam<>> const&, Marker<AncfBeam<
 extern template void Visual::attach(Marker<AncfBeam<>> const&, Surface const&, std::string);
 extern template void Visual::sweep(BodyHandle<AncfBeam<>> const&, Bar const&, int, int);
 extern template Frame<double> frame(BodyInState<AncfCable<>> const&, AncfCable<>::Point const&);
+extern template Frame<double> frame(BodyInState<AncfCable<EngineeringStrain>> const&,
+                                    AncfCable<EngineeringStrain>::Point const&);
 extern template FrameIn frame_in(BodyHandle<AncfCable<>> const&, Marker<AncfCable<>> const&);
+extern template FrameIn frame_in(BodyHandle<AncfCable<EngineeringStrain>> const&,
+                                 Marker<AncfCable<EngineeringStrain>> const&);
 extern template void Visual::attach(Marker<AncfCable<>> const&, Surface const&, std::string);
+extern template void Visual::attach(Marker<AncfCable<EngineeringStrain>> const&, Surface const&, std::string);
 extern template void Visual::sweep(BodyHandle<AncfCable<>> const&, Bar const&, int, int);
+extern template void Visual::sweep(BodyHandle<AncfCable<EngineeringStrain>> const&, Bar const&, int, int);
 extern template Frame<double> frame(BodyInState<AncfBeam<Continuum<>>> const&, AncfBeam<Continuum<>>::Point const&);
 extern template FrameIn frame_in(BodyHandle<AncfBeam<Continuum<>>> const&, Marker<AncfBeam<Continuum<>>> const&);
 extern template void Visual::attach(Marker<AncfBeam<Continuum<>>> const&, Surface const&, std::string);
@@ -75,6 +83,8 @@ extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<>, d
                                                                                        AncfBeam<>::Point const&);
 extern template detail::LinearPointOf<double> detail::linear_point<AncfCable<>, double>(AncfCable<> const&,
                                                                                         AncfCable<>::Point const&);
+extern template detail::LinearPointOf<double> detail::linear_point<AncfCable<EngineeringStrain>, double>(
+    AncfCable<EngineeringStrain> const&, AncfCable<EngineeringStrain>::Point const&);
 extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Continuum<>>, double>(
     AncfBeam<Continuum<>> const&, AncfBeam<Continuum<>>::Point const&);
 extern template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
