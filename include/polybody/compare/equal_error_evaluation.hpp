@@ -92,8 +92,8 @@ std::optional<Extrapolation> limit_along(EqualErrorReport const& r, StudiedFormu
   std::size_t const n = y.size();
   f.remarks.push_back("no reference: the output does not converge with the " + axis + ". It changes by " +
                       r.with_unit(largest_difference(*y[n - 1], *y[n - 2])) + " between the two finest and by " +
-                      r.with_unit(largest_difference(*y[n - 2], *y[n - 3])) + " between the next two. " +
-                      (axis == "meshes" ? "Add finer " : "Add smaller ") + axis + ".");
+                      r.with_unit(largest_difference(*y[n - 2], *y[n - 3])) + " between the next two. Add finer " +
+                      axis + ".");
   return std::nullopt;
 }
 

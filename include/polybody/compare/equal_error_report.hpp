@@ -114,8 +114,7 @@ struct EqualErrorReport {
     std::size_t const at = output.rfind(" [");
     return at == std::string::npos ? std::string() : output.substr(at + 1);
   }
-  /// Text of a number with the unit of the output without brackets, such as "0.3 m".
-  /// \param x number [unit of the output] \param digits number of significant digits
+  /// Text of x with its unit, such as "0.3 m". \param x value [unit of the output] \param digits significant digits
   std::string with_unit(double x, int digits = 3) const {
     std::string const brackets = unit();
     return number(x, digits) + (brackets.size() > 2 ? ' ' + brackets.substr(1, brackets.size() - 2) : std::string());
