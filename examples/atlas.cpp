@@ -40,7 +40,7 @@ Done run(Problem const& problem, Options const& o, std::vector<ExternalResult> c
   EqualErrorStudy study({.modes = {1, 2, 4}, .repeats = o.quick ? 1 : 5});
   Formulations formulations(study, problem.question, o.quick);
   problem.add(formulations);
-  Done done{problem, study.run(), {.machine = o.machine}};
+  Done done{problem, formulations.run(), {.machine = o.machine}};
   done.others.runs = runs_of(external, problem, done.report, o.external);
   write_report(done.report, o.output / problem.name,
                {.title = problem.title,

@@ -32,21 +32,29 @@ std::string steps_of(StudiedFormulation const& f) {
   std::vector<double> steps;
   for (StudyRun const& run : f.runs)
     if (run.mesh == f.runs.front().mesh) steps.push_back(run.step);
-  return listed(steps, [](double h) { return number(h, 4); });
+  return (f.step_name == "tolerance" ? "tolerances " : "") + listed(steps, [](double h) { return number(h, 4); });
 }
 
 Table settings_table(EqualErrorReport const& r) {
   Table t{"Formulations",
-          "Physical model, meshes and steps of each formulation; observed orders; error bar of the extrapolated limit. "
-          "The integrator is " +
-              r.formulations.front().integrator + ".",
+          "Physical model, meshes and steps of each formulation; observed orders; error bar of the extrapolated limit.",
           {"formulation", "physical model", "policy", "meshes", "steps [s]", "order in mesh", "order in step",
            "error bar " + r.unit()},
           1};
-  for (StudiedFormulation const& f : r.formulations)
+  bool several = false;
+  for (StudiedFormulation const& f : r.formulations) {
+    several = several || f.integrator != r.formulations.front().integrator;
     t.rows.push_back({Cell::of(f.name), Cell::of(f.model), Cell::of(f.policy), Cell::of(meshes_of(f)),
                       Cell::of(steps_of(f)), Cell::number(f.mesh_order, 2, 0.15), Cell::number(f.step_order, 2, 0.15),
                       Cell::number(f.limit_error, 2, 0.2 * f.limit_error)});
+  }
+  if (!several) {
+    t.note += " The integrator is " + r.formulations.front().integrator + ".";
+    return t;
+  }
+  t.heads.insert(t.heads.begin() + 3, "integrator");
+  for (std::size_t i = 0; i < t.rows.size(); ++i)
+    t.rows[i].insert(t.rows[i].begin() + 3, Cell::of(r.formulations[i].integrator));
   return t;
 }
 

@@ -81,6 +81,23 @@ class Formulations {
     study_.add(make_case, formulation, entry(model, settings));
   }
 
+  // Adds a combination of another program by `add_to(study, entry)`.
+  template <class AddTo>
+  void add(combinations::BodyOnPolicy const& of, std::string const& name, Settings const& settings,
+           AddTo const& add_to) {
+    add_to(study_, entry(of.body.model, settings));
+    combinations_.push_back({name, of});
+  }
+
+  // Runs the study. Combinations of other programs have the names of their body and policy from the table.
+  EqualErrorReport run() const {
+    EqualErrorReport report = study_.run();
+    for (StudiedFormulation& f : report.formulations)
+      for (auto const& [name, of] : combinations_)
+        if (f.name == name) f.family = of.family, f.policy = of.enforcement;
+    return report;
+  }
+
   // Meshes and steps for the study. The quick run has the first three of each.
   StudyEntry entry(std::string const& model, Settings settings) const {
     if (quick_) {
@@ -94,6 +111,7 @@ class Formulations {
   EqualErrorStudy& study_;
   Question question_;
   bool quick_;
+  std::vector<std::pair<std::string, combinations::BodyOnPolicy>> combinations_ = {};
 };
 
 // Value of the output at the end of the run that an independent source gives for a physical model.
@@ -109,7 +127,7 @@ struct Problem {
   std::string text;   // mechanism, data and output: the first paragraph of a new page
   Question question;
   std::string model;  // physical model with which the summary compares the others
-  std::function<void(Formulations&)> add;
+  std::function<void(Formulations&)> add = {};
   std::vector<KnownAnswer> known = {};
   std::vector<Excluded> excluded = {};
 };

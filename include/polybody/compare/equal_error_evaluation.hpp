@@ -72,8 +72,8 @@ Extrapolation extrapolate(std::vector<std::vector<double> const*> const& y, std:
 /// Extrapolates the output of a formulation over its meshes or its steps: `select(run)` returns the size of a run of
 /// this sequence, or zero for other runs. Adds a remark and returns nothing if the sequence does not converge.
 template <class Select>
-std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string const& axis, double negligible,
-                                         Select&& select) {
+std::optional<Extrapolation> limit_along(EqualErrorReport const& r, StudiedFormulation& f, std::string const& axis,
+                                         double negligible, Select&& select) {
   std::vector<std::vector<double> const*> y;
   std::vector<double> sizes;
   for (StudyRun const& run : f.runs)
@@ -91,18 +91,18 @@ std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string cons
   if (out.converges) return out;
   std::size_t const n = y.size();
   f.remarks.push_back("no reference: the output does not converge with the " + axis + ". It changes by " +
-                      number(largest_difference(*y[n - 1], *y[n - 2]), 3) + " between the two finest and by " +
-                      number(largest_difference(*y[n - 2], *y[n - 3]), 3) + " between the next two. Add finer " + axis +
-                      ".");
+                      r.with_unit(largest_difference(*y[n - 1], *y[n - 2])) + " between the two finest and by " +
+                      r.with_unit(largest_difference(*y[n - 2], *y[n - 3])) + " between the next two. Add finer " +
+                      axis + ".");
   return std::nullopt;
 }
 
 /// Computes the limit of a formulation with its error bound and observed orders.
 template <class = void>
-void find_limit(StudiedFormulation& f, double span) {
+void find_limit(EqualErrorReport const& r, StudiedFormulation& f) {
   StudyRun const& fine = f.finest();
   if (fine.y.empty()) return;
-  double const negligible = std::max(1e-9 * span, f.spread);
+  double const negligible = std::max(1e-9 * r.span, f.spread);
   std::vector<double> limit = fine.y;
   double error = 0.0;
   auto const add = [&](std::optional<Extrapolation> const& part, double& order) {
@@ -114,15 +114,34 @@ void find_limit(StudiedFormulation& f, double span) {
   };
   bool const in_space =
       f.mesh_name.empty() ||
-      add(limit_along(f, "meshes", negligible,
+      add(limit_along(r, f, "meshes", negligible,
                       [&](StudyRun const& run) { return run.step == fine.step ? 1.0 / double(run.mesh) : 0.0; }),
           f.mesh_order);
-  bool const in_time = add(limit_along(f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible,
+  bool const in_time = add(limit_along(r, f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible,
                                        [&](StudyRun const& run) { return run.mesh == fine.mesh ? run.step : 0.0; }),
                            f.step_order);
   if (!in_space || !in_time) return;
   f.limit = std::move(limit);
   f.limit_error = error;
+}
+
+/// Removes the limit of a formulation and adds a remark, if its error bound exceeds the span of the output.
+template <class = void>
+void refuse_limit(EqualErrorReport const& r, StudiedFormulation& f) {
+  if (f.limit.empty() || f.limit_error <= r.span) return;
+  std::string orders;
+  auto const add = [&](double order, std::string const& axis) {
+    if (!std::isnan(order))
+      orders += (orders.empty() ? " The observed order is " : " and ") + number(order, 2) + " in the " + axis;
+  };
+  add(f.mesh_order, "mesh");
+  add(f.step_order, f.step_name == "tolerance" ? "tolerance" : "step");
+  f.remarks.push_back("no reference: the output \"" + r.output + "\" of \"" + f.name +
+                      "\" does not converge. The error bound of its limit, " + r.with_unit(f.limit_error) +
+                      ", exceeds the span, " + r.with_unit(r.span) + '.' + orders + (orders.empty() ? "" : ".") +
+                      " Add finer meshes and shorter steps.");
+  f.limit.clear();
+  f.limit_error = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Selects the reference of each physical model, and computes discretisation errors and differences of the models.
@@ -148,8 +167,8 @@ void find_references(EqualErrorReport& r) {
       double const apart = largest_difference(f.limit, r.reference(k));
       if (apart > f.limit_error + reference.error + f.spread)
         f.remarks.push_back("its limit differs from that of \"" + r.formulations[reference.formulation].name +
-                            "\" by " + number(apart, 3) + ", more than the sum of the error bounds, " +
-                            number(f.limit_error + reference.error, 3) +
+                            "\" by " + r.with_unit(apart) + ", more than the sum of the error bounds, " +
+                            r.with_unit(f.limit_error + reference.error) +
                             ", although both have the same physical model. Use finer meshes and shorter steps.");
     }
   for (std::size_t a = 0; a < r.references.size(); ++a)
