@@ -11,7 +11,7 @@ template struct BodyKernels<planar::AncfCable<EngineeringStrain>, double>;
 template struct BodyKernels<planar::Lrvf, double>;
 template planar::AncfCable<>::Beam(Bar const&, BarConstants const&, Index);
 template planar::AncfCable<EngineeringStrain>::Beam(Bar const&, BarConstants const&, Index);
-template planar::Lrvf::Beam(Bar const&, BarConstants const&, Index);
+template planar::Beam<planar::SimoVuQuocBy<ReducedQuadrature>>::Beam(Bar const&, BarConstants const&, Index);
 template struct JointKernels<Joint<Revolute, Constraint>, double>;
 template struct JointKernels<Joint<Revolute, Bushing>, double>;
 template struct JointKernels<Joint<Revolute, AncfLinear>, double>;

@@ -26,7 +26,7 @@ extern template struct BodyKernels<planar::AncfCable<EngineeringStrain>, double>
 extern template struct BodyKernels<planar::Lrvf, double>;
 extern template planar::AncfCable<>::Beam(Bar const&, BarConstants const&, Index);
 extern template planar::AncfCable<EngineeringStrain>::Beam(Bar const&, BarConstants const&, Index);
-extern template planar::Lrvf::Beam(Bar const&, BarConstants const&, Index);
+extern template planar::Beam<planar::SimoVuQuocBy<ReducedQuadrature>>::Beam(Bar const&, BarConstants const&, Index);
 extern template struct BodyKernels<AncfBeam<>, double>;
 extern template AncfBeam<>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 extern template struct BodyKernels<AncfCable<>, double>;
