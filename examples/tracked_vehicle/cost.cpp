@@ -8,9 +8,9 @@ using combinations::Selection;
 
 namespace {
 
-constexpr double sampled = 1.25e-4;         // shortest sampling interval of a recorded run [s]
-constexpr int repeats = 3;                  // number of timed runs
-constexpr double longest_repeated = 2.0;    // CPU time of the longest run that is timed more than once [s]
+constexpr double sampled = 1.25e-4;       // shortest sampling interval of a recorded run [s]
+constexpr int repeats = 3;                // number of timed runs
+constexpr double longest_repeated = 2.0;  // CPU time of the longest run that is timed more than once [s]
 
 // Difference of the 30 Hz force over the whole run, relative to the force of `first` [1].
 double difference(Runs const& first, Runs const& second, double end) {
@@ -22,7 +22,7 @@ Options with_accuracy(Options o, Combination const& c, double accuracy) {
   o.default_step = false;
   if (has_step_control(c)) {
     o.tolerance = accuracy;
-    o.step = 2.0 * sampled;  // longest step
+    o.step = 1.5 * sampled;  // longest step; states are interpolated over at most 2.5 sampling intervals
     o.sampling = sampled;
   } else {
     o.step = accuracy;
@@ -35,8 +35,10 @@ Options with_accuracy(Options o, Combination const& c, double accuracy) {
 Runs run_pins(Options const& o, ConvergedPins const& pins, Combination const& c) {
   Runs runs = Pins{pins.name, c, pins.stiffness}.run(o);
   if (RunReport const& report = runs.comparison.runs[0].run; report.stopped)
-    throw InvalidInput{"\"", ErrorObject{pins.name}, "\": ", report.events.back().name, " at t = ",
-                       ErrorTime{report.events.back().time}, " s."};
+    throw InvalidInput{"\"",       ErrorObject{pins.name},
+                       "\": ",     report.events.back().name,
+                       " at t = ", ErrorTime{report.events.back().time},
+                       " s."};
   return runs;
 }
 
@@ -100,7 +102,8 @@ void time_again(CostStudy& study, Options o) {
 
 // Adds a combination that does not exist. Integrators with the same reason share a sentence.
 void refuse(CostStudy& study, Combination const& c) {
-  std::string const name = c.links.body.name + ", " + c.links.policy + " with ", reason = " does not exist: " + c.refusal();
+  std::string const name = c.links.body.name + ", " + c.links.policy + " with ",
+                    reason = " does not exist: " + c.refusal();
   for (std::string& known : study.refusals)
     if (known.starts_with(name) && known.ends_with(reason)) {
       known.insert(known.size() - reason.size(), ", " + integrator_name(c));
@@ -113,8 +116,8 @@ void refuse(CostStudy& study, Combination const& c) {
 std::size_t pins_of(CostStudy& study, Combination const& c, double stiffness) {
   std::string name = (c.links.body.name == "rigid" ? "" : c.links.body.name + ", ") + c.links.policy;
   if (c.links.policy == "penalty") name += " " + compact(stiffness);
-  auto const known = std::find_if(study.pins.begin(), study.pins.end(),
-                                  [&](ConvergedPins const& pins) { return pins.name == name; });
+  auto const known =
+      std::find_if(study.pins.begin(), study.pins.end(), [&](ConvergedPins const& pins) { return pins.name == name; });
   if (known != study.pins.end()) return std::size_t(known - study.pins.begin());
   study.pins.push_back({.name = name, .links = c.links, .stiffness = stiffness});
   return study.pins.size() - 1;
@@ -144,7 +147,8 @@ CostStudy cost_study(Options o) {
   o.audit = false;
   Selection& s = o.selection;
   bool const default_steps = s.steps.empty();
-  complete(s, {.steps = {4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}, .tolerances = {1e-3, 1e-4, 1e-5}, .errors = {1e-2, 1e-3, 1e-4}});
+  complete(s,
+           {.steps = {4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}, .tolerances = {1e-3, 1e-4, 1e-5}, .errors = {1e-2, 1e-3, 1e-4}});
   if (s.bodies.empty()) s.bodies = {"rigid"};
   if (s.policies.empty()) s.policies = combinations::all_policies;
   if (s.integrators.empty()) s.integrators = {"generalised-alpha", "radau", "adams"};

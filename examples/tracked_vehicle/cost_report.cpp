@@ -136,7 +136,7 @@ void write_table(CostStudy const& study, fs::path const& file) {
 // Colour of pins: of constraint, penalty, bushing and joint coordinates as in all figures of the chapter, of the other
 // stiffnesses of penalties one of the remaining colours.
 int colour_of(CostStudy const& study, std::size_t k) {
-  constexpr std::array<int, 4> others{5, 3, 6, 7};
+  constexpr std::array<int, 4> others{7, 5, 3, 6};
   LinksOnPins const& links = study.pins[k].links;
   auto const& all = combinations::all_policies;
   if (links.policy != "penalty" || study.pins[k].stiffness == m113::pin_stiffness)
@@ -170,14 +170,26 @@ Figure work_figure(CostStudy const& study, std::string const& integrator) {
   return f;
 }
 
+// Whole decades that contain a coordinate of all points.
+std::array<double, 2> decades(std::vector<Figure> const& figures, std::vector<double> Curve::* coordinate) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (Figure const& f : figures)
+    for (Curve const& c : f.curves)
+      for (double const x : c.*coordinate) low = std::min(low, x), high = std::max(high, x);
+  return {std::pow(10.0, std::floor(std::log10(low) - 1e-9)), std::pow(10.0, std::ceil(std::log10(high) + 1e-9))};
+}
+
 // Difference of penalties from the first pins over their stiffness, and its bound.
 Figure difference_figure(CostStudy const& study) {
-  Figure f{.title = "penalty - " + study.pins.front().name,
+  Figure f{.title = "penalties: difference from " + study.pins.front().name,
            .x_label = "stiffness of the pins [N/m]",
            .y_label = "difference of the 30 Hz force [1]",
            .log_x = true,
-           .log_y = true};
-  Curve difference{.label = "difference", .style = "linespoints", .colour = 1}, bound{.label = "bound", .style = "dashed", .colour = 6};
+           .log_y = true,
+           .width_px = 800,
+           .height_px = 560};
+  Curve difference{.label = "difference", .style = "linespoints", .colour = 1},
+      bound{.label = "bound", .style = "dashed", .colour = 6};
   for (ConvergedPins const& pins : study.pins) {
     if (pins.links.policy != "penalty" || !pins.failure.empty() || pins.difference <= 0.0) continue;
     for (Curve* const c : {&difference, &bound}) c->x.push_back(pins.stiffness);
@@ -196,9 +208,11 @@ void draw(Options const& o, CostStudy const& study) {
     drawn.push_back(curve.integrator);
     figures.push_back(work_figure(study, curve.integrator));
   }
-  figures.push_back(difference_figure(study));
   std::erase_if(figures, [](Figure const& f) { return f.curves.empty(); });
   if (figures.empty()) return;
+  auto const x = decades(figures, &Curve::x), y = decades(figures, &Curve::y);
+  for (Figure& f : figures) f.x_range = x, f.y_range = y;
+  if (Figure const f = difference_figure(study); !f.curves.empty()) figures.push_back(f);
   write_panels(figures, 2, o.out / "cost", !o.no_plot);
   std::cout << "  " << (o.out / "cost").string() << (o.no_plot ? ".gp" : ".png") << '\n';
 }

@@ -38,5 +38,6 @@ CASES = {
         f"by_{integrator}": (PAGE, VEHICLE + f"--integrator {integrator} --until 0.1", lines)
         for integrator in ["generalised-alpha", "hht", "radau", "adams", "dormand-prince", "runge-kutta"]
     },
+    "pin_cost": (PAGE, VEHICLE + "--compare cost", lines),
     "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
 }
