@@ -196,7 +196,10 @@ Figure difference_figure(CostStudy const& study) {
     difference.y.push_back(pins.difference);
     bound.y.push_back(study.pins.front().resolution() + pins.resolution());
   }
-  if (!difference.x.empty()) f.curves = {difference, bound};
+  if (difference.x.empty()) return f;
+  auto const [softest, stiffest] = std::minmax_element(difference.x.begin(), difference.x.end());
+  f.x_range = {{0.5 * *softest, 2.0 * *stiffest}};
+  f.curves = {difference, bound};
   return f;
 }
 
