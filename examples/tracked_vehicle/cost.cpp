@@ -160,9 +160,8 @@ CostStudy cost_study(Options o) {
     throw InvalidInput{ErrorObject{"--compare cost"}, ": no selected combination exists. ", study.refusals.front()};
   o.start = std::make_shared<m113::TrackStart const>(settled(o));
   for (ConvergedPins& pins : study.pins) converge(pins, o);
-  ConvergedPins const& first = study.pins.front();
   for (ConvergedPins& pins : study.pins)
-    if (first.failure.empty() && pins.failure.empty()) pins.difference = difference(first.run, pins.run, o.end_time);
+    if (pins.failure.empty()) pins.difference = difference(study.reference().run, pins.run, o.end_time);
   for (CostCurve& curve : study.curves)
     if (study.pins[curve.pins].failure.empty())
       record(curve, study.pins[curve.pins], o, accuracies(o, curve.combination, default_steps));

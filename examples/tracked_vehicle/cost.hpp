@@ -15,7 +15,7 @@ struct ConvergedPins {
   double bound = 0.0;  // difference from the run with half of the shortest step, an error bound [1]
   // Difference from a run whose preload differs in the last place [1]. Contacts amplify round-off.
   double spread = 0.0;
-  double difference = 0.0;   // difference from the first converged run, without error bounds [1]
+  double difference = 0.0;   // difference from the reference of the study, without error bounds [1]
   std::string failure = {};  // message of a run that failed; empty if there is a converged force
 
   // Errors below this value are not resolved [1].
@@ -49,6 +49,13 @@ struct CostStudy {
   std::vector<ConvergedPins> pins = {};
   std::vector<CostCurve> curves = {};
   std::vector<std::string> refusals = {};  // combinations that do not exist, with their reasons
+
+  // First pins with a converged force, from which the others differ; the first pins if there is no converged force.
+  ConvergedPins const& reference() const {
+    auto const found =
+        std::find_if(pins.begin(), pins.end(), [](ConvergedPins const& one) { return one.failure.empty(); });
+    return found == pins.end() ? pins.front() : *found;
+  }
 };
 
 // Runs the study of the selected integrators, or of generalised-α, Radau and Adams, and of the selected policies, or of

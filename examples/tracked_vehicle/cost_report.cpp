@@ -72,7 +72,7 @@ void print_ranking(CostStudy const& study, double wanted) {
 // Differences between the formulations, and all runs.
 void print_lines(CostStudy const& study) {
   Lines lines;
-  ConvergedPins const& first = study.pins.front();
+  ConvergedPins const& first = study.reference();
   std::cout << "\nDifferences of the converged forces from those of " << first.name << ":\n";
   for (ConvergedPins const& pins : study.pins) {
     if (!pins.failure.empty()) {
@@ -181,7 +181,7 @@ std::array<double, 2> decades(std::vector<Figure> const& figures, std::vector<do
 
 // Difference of penalties from the first pins over their stiffness, and its bound.
 Figure difference_figure(CostStudy const& study) {
-  Figure f{.title = "penalties: difference from " + study.pins.front().name,
+  Figure f{.title = "penalties: difference from " + study.reference().name,
            .x_label = "stiffness of the pins [N/m]",
            .y_label = "difference of the 30 Hz force [1]",
            .log_x = true,
@@ -194,7 +194,7 @@ Figure difference_figure(CostStudy const& study) {
     if (pins.links.policy != "penalty" || !pins.failure.empty() || pins.difference <= 0.0) continue;
     for (Curve* const c : {&difference, &bound}) c->x.push_back(pins.stiffness);
     difference.y.push_back(pins.difference);
-    bound.y.push_back(study.pins.front().resolution() + pins.resolution());
+    bound.y.push_back(study.reference().resolution() + pins.resolution());
   }
   if (difference.x.empty()) return f;
   auto const [softest, stiffest] = std::minmax_element(difference.x.begin(), difference.x.end());
