@@ -39,5 +39,10 @@ CASES = {
         for integrator in ["generalised-alpha", "hht", "radau", "adams", "dormand-prince", "runge-kutta"]
     },
     "pin_cost": (PAGE, VEHICLE + "--compare cost", lines),
+    "pin_cost_cables": (
+        PAGE,
+        VEHICLE + "--compare cost --body rigid,ancf --policy constraint,ancf-linear --integrator generalised-alpha",
+        lines,
+    ),
     "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
 }
