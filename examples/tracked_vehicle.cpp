@@ -2,6 +2,7 @@
 // under every combination of links, pins and integrator.
 //   tracked_vehicle --policy penalty --until 3
 //   tracked_vehicle --compare
+//   tracked_vehicle --compare cost                                                 # of the pins, at equal error
 //   tracked_vehicle --figure 3.11
 //   tracked_vehicle --body ffr --policy bushing --integrator adams --until 0.5     # --list: the combinations
 //   tracked_vehicle --compare combinations --body rigid,lrvf --until 0.3           # at equal error
@@ -13,6 +14,7 @@
 #include <polybody/polybody.hpp>
 
 #include "support/vehicle_film.hpp"
+#include "tracked_vehicle/cost.hpp"
 #include "tracked_vehicle/measures.hpp"
 #include "tracked_vehicle/pins.hpp"
 
@@ -268,26 +270,25 @@ void check(Options const& o) {
         "runs or --compare combinations.");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Options o;
-  CommandLine line{
-      "The tracked vehicle of Chapter 3: its figures, and runs of every combination of links, pins and integrator."};
-  double step = 0.0;
+// `step` and `until` are zero if the command line does not give them.
+void add_options(CommandLine& line, Options& o, double& step, double& until) {
   add_combination_options(
       line, o,
       {.body = "body formulation of the links, or a list such as rigid,ffr (default: rigid)",
-       .policy = "policy of the pins, or a list (default: ancf-linear for cables and beams of ANCF, else constraint)"});
+       .policy = "policy of the pins, or a list (default: ancf-linear for cables and beams of ANCF, else constraint)",
+       .steps = ", or for cost 4e-3,2e-3,1e-3,5e-4,2.5e-4",
+       .tolerances = ", or for cost 1e-3,1e-4,1e-5",
+       .errors = ", or for cost 1e-2,1e-3,1e-4"});
   line.one_of(
-      "--compare", &o.compare, {"pins", "combinations", "steps"},
+      "--compare", &o.compare, {"pins", "combinations", "steps", "cost"},
       "pins: five formulations of the thesis and of joint coordinates, with a report; combinations: the selected "
-      "ones at equal error; steps: ten steps of every combination",
+      "ones at equal error; steps: ten steps of every combination; cost: cost of the pins at equal error of the 30 Hz "
+      "force",
       "pins");
   line.one_of("--figure", &o.figure,
               {"3.6", "3.7", "3.8", "3.9", "3.10", "3.11", "3.12", "3.13", "3.14", "3.15", "table", "all"},
               "figure of the thesis with its numbers, Table 3.4, or all");
-  line.positive("--until", &o.end_time, "end of the run [s]");
+  line.positive("--until", &until, "end of the run [s]; if omitted, 10, or 1.5 for --compare cost");
   line.positive(
       "--step", &step,
       "step [s], for adams and dormand-prince the longest step; if omitted, 0.5 ms, or for runge-kutta a step "
@@ -299,6 +300,7 @@ int main(int argc, char** argv) {
   line.flag("!--no-suspension", &o.suspension, "arms welded to the chassis");
   line.option("--preload", &o.preload, "preload of the tensioners [N]");
   line.positive("--penalty", &o.spring_pins, "stiffness of penalty pins and bushings [N/m]");
+  line.positive("--penalties", &o.penalties, "stiffnesses of penalty pins of --compare cost [N/m]");
   line.flag("--shared-contacts", &o.shared_contacts,
             "stiffness and damping of Table 3.2 belong to all contact points of a link on one body, not to each point");
   line.between("--cut", &o.cut, 0, m113::links - 1, "pin at which the loop of ideal pins is cut");
@@ -312,13 +314,30 @@ int main(int argc, char** argv) {
   line.flag("--audit", &o.audit, "prints the energy balance");
   line.option("--out", &o.out, "folder of the results");
   line.flag("--no-plot", &o.no_plot, "write data and scripts, but draw nothing");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CommandLine line{
+      "The tracked vehicle of Chapter 3: its figures, and runs of every combination of links, pins and integrator."};
+  double step = 0.0, until = 0.0;
+  add_options(line, o, step, until);
   if (auto const code = line.parse(argc, argv)) return *code;
+  if (o.compare == "cost") o.end_time = 1.5;
+  if (until > 0.0) o.end_time = until;
   if (o.turn == "pivot") o.right = -1.0;
   if (o.turn == "curve") o.right = 0.8;
   try {
     complete(o, step);
     check(o);
     if (is_of_combinations(o, o.compare)) return run_combinations(o, o.compare) ? 0 : 1;
+    if (o.compare == "cost") {
+      fs::create_directories(o.out);
+      report(o, cost_study(o));
+      return 0;
+    }
     if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
     if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 3");
     fs::create_directories(o.out);

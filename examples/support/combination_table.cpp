@@ -20,10 +20,12 @@ void add_selection(CommandLine& line, Selection& s, std::vector<std::string> con
   std::string const at_equal_error = "for the comparison at equal error: ";
   line.positive("--meshes", &s.meshes, at_equal_error + "numbers of elements, ascending");
   line.positive("--modes", &s.modes, at_equal_error + "numbers of modes" + help.modes);
-  line.positive("--steps", &s.steps, at_equal_error + "steps, descending [s]");
-  line.positive("--tolerances", &s.tolerances,
-                at_equal_error + "relative tolerances of integrators with step size control, descending");
-  line.positive("--error", &s.errors, at_equal_error + "wanted errors, relative to the span of the output");
+  line.positive("--steps", &s.steps, at_equal_error + "steps, descending [s]" + help.steps);
+  line.positive(
+      "--tolerances", &s.tolerances,
+      at_equal_error + "relative tolerances of integrators with step size control, descending" + help.tolerances);
+  line.positive("--error", &s.errors,
+                at_equal_error + "wanted errors, relative to the span of the output" + help.errors);
 }
 
 bool is_among(std::string const& name, std::vector<std::string> const& chosen) {

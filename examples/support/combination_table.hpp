@@ -75,7 +75,7 @@ inline std::vector<std::string> const all_policies{"constraint", "penalty", "bus
                                                    "joint-coordinates"};
 // Texts of the help for the program's defaults.
 struct SelectionHelp {
-  std::string body = {}, policy = {}, integrator = {}, modes = {};
+  std::string body = {}, policy = {}, integrator = {}, modes = {}, steps = {}, tolerances = {}, errors = {};
 };
 // Adds the options --body, --policy, --integrator, --list, --meshes, --modes, --steps, --tolerances and --error.
 void add_selection(CommandLine& line, Selection& s, std::vector<std::string> const& bodies,

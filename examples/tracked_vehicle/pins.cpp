@@ -1,5 +1,7 @@
 #include "pins.hpp"
 
+#include <regex>
+
 namespace chapter3 {
 
 namespace {
@@ -11,13 +13,18 @@ Pins named(Combination const& c, double stiffness, bool with_integrator = false)
     name = c.links.policy;
   else if (!c.links.usual)
     name += ", " + c.links.policy;
-  if (rigid && name == "penalty" && stiffness != m113::pin_stiffness)
-    name += stiffness == m113::soft_pin_stiffness ? " 1e7" : " " + number(stiffness);
+  if (rigid && name == "penalty" && stiffness != m113::pin_stiffness) name += " " + compact(stiffness);
   if (with_integrator) name += ", " + integrator_name(c);
   return {name, c, stiffness};
 }
 
 }  // namespace
+
+std::string compact(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return std::regex_replace(text, std::regex("e\\+?(-?)0*"), "e$1");
+}
 
 Pins ideal_pins(Options const& o) { return named(combination(o, "rigid"), o.spring_pins); }
 Pins penalty_pins(Options const& o, double k) { return named(combination(o, "rigid", "penalty"), k); }

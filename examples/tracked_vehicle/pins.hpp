@@ -8,6 +8,7 @@ struct Options : LinkSettings {
   std::string compare, figure, turn;
   fs::path viewer, film_file;
   bool halve = false;
+  std::vector<double> penalties{1e6, 1e7, 1e8, 1e9, 1e10};  // stiffnesses of penalty pins of --compare cost [N/m]
 };
 
 // Links on pins with an integrator, as the runs of this program name them.
@@ -20,6 +21,8 @@ struct Pins {
   // Count of coordinates and constraints as in the thesis, in which the ground is a body.
   ProblemSize count(Options const& o) const;
 };
+// A number as short text, such as "1e7".
+std::string compact(double x);
 // Rigid links, with the name of the policy of their pins.
 Pins ideal_pins(Options const& o);
 Pins penalty_pins(Options const& o, double stiffness);

@@ -61,6 +61,8 @@ bool compare_selected(LinkSettings o) {
   std::size_t const output = std::size_t(std::find(names.begin(), names.end(), o.output) - names.begin());
   Selection selection = o.selection;
   if (selection.modes.empty()) selection.modes = {1, 2, 4};
+  complete(selection,
+           {.steps = {1e-3, 5e-4, 2.5e-4}, .tolerances = {1e-4, 1e-5, 1e-6, 1e-7}, .errors = {1e-1, 1e-2, 1e-3}});
   CombinationStudy study(selection, output);
   auto const outcomes = std::make_shared<std::vector<Outcome>>();
   for (Choice const& choice : choices(table(), selection, {"rigid"})) {
@@ -84,6 +86,9 @@ bool compare_selected(LinkSettings o) {
 void add_combination_options(CommandLine& line, LinkSettings& o, SelectionHelp help) {
   help.integrator = "integrator, or a list such as hht,radau (default: generalised-alpha)";
   help.modes = " of ffr and fe, ascending; a single run takes the last one (default: 3)";
+  help.steps = " (default: 1e-3,5e-4,2.5e-4)" + help.steps;
+  help.tolerances = " (default: 1e-4,1e-5,1e-6,1e-7)" + help.tolerances;
+  help.errors = " (default: 1e-1,1e-2,1e-3)" + help.errors;
   add_selection(line, o.selection, body_names(), table().integrators, help);
   line.not_negative("--elements", &o.elements,
                     "elements of a flexible link except fe; 0: one, or two in a floating frame");
@@ -92,6 +97,12 @@ void add_combination_options(CommandLine& line, LinkSettings& o, SelectionHelp h
                 "dormand-prince, of the error of a step "
                 "(if omitted, 1e-6)");
   line.one_of("--output", &o.output, output_names(), "output of the comparison at equal error");
+}
+
+void complete(Selection& s, StudyLists const& usual) {
+  if (s.steps.empty()) s.steps = usual.steps;
+  if (s.tolerances.empty()) s.tolerances = usual.tolerances;
+  if (s.errors.empty()) s.errors = usual.errors;
 }
 
 void complete(LinkSettings& o, double step) {
@@ -127,6 +138,16 @@ Combination combination(LinkSettings const& o, std::string const& body, std::str
   return {all_links()[choice.row], choice.integrator};
 }
 
+std::vector<Combination> candidates(Selection const& s) {
+  std::vector<Combination> found;
+  for (LinksOnPins const& links : all_links())
+    for (std::size_t k = 0; k < table().integrators.size(); ++k)
+      if (is_among(links.body.name, s.bodies) && is_among(links.policy, s.policies) &&
+          is_among(table().integrators[k], s.integrators))
+        found.push_back({links, k});
+  return found;
+}
+
 std::string integrator_name(Combination const& c) { return table().integrators[c.integrator]; }
 
 bool has_step_control(Combination const& c) {
@@ -139,7 +160,7 @@ bool has_step_control(Combination const& c) {
 LinkSettings with_steps(LinkSettings o, Combination const& c) {
   if (o.default_step && integrator_name(c) == "runge-kutta") o.step = c.links.stable_step;
   if (has_step_control(c)) o.first_step = std::min(1e-5, o.step);
-  if (o.first_step > 0.0 || o.step < o.sampled_below) o.sampling = std::max(o.step, o.sampled);
+  if (o.sampling == 0.0 && (o.first_step > 0.0 || o.step < o.sampled_below)) o.sampling = std::max(o.step, o.sampled);
   return o;
 }
 

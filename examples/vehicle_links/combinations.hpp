@@ -9,6 +9,9 @@ namespace chapter3 {
 struct Combination {
   LinksOnPins links;
   std::size_t integrator = 0;  // number in the table
+
+  // Sentence of the refusal; empty if the combination exists.
+  std::string const& refusal() const { return links.refusals[integrator]; }
 };
 
 // Adds the options of the selection, --elements, --tolerance and --output.
@@ -16,6 +19,14 @@ void add_combination_options(CommandLine& line, LinkSettings& o, combinations::S
 // Completes the settings after the command line has been read. \param step value of --step [s]; 0: the default
 void complete(LinkSettings& o, double step);
 
+// Steps [s], tolerances and wanted errors of a study whose options do not give them.
+struct StudyLists {
+  std::vector<double> steps, tolerances, errors;
+};
+void complete(combinations::Selection& s, StudyLists const& usual);
+
+// Every combination of the bodies, policies and integrators of `s`, also those that do not exist.
+std::vector<Combination> candidates(combinations::Selection const& s);
 // Selected combinations; without bodies those of the body `usual`. Throws InvalidInput for one that does not exist, and
 // for one that cannot turn if the vehicle turns.
 std::vector<Combination> selected(LinkSettings const& o, std::string const& usual);
@@ -28,7 +39,7 @@ void require_turning(LinkSettings const& o, LinksOnPins const& links);
 std::string integrator_name(Combination const& c);
 // True if the integrator controls its step.
 bool has_step_control(Combination const& c);
-// Settings with the steps and the sampling interval of the combination.
+// Settings with the steps of the combination, and with its sampling interval if they have none.
 LinkSettings with_steps(LinkSettings o, Combination const& c);
 // Runs the scenario that `make` returns by the integrator of the combination. Throws Error if the run fails.
 Comparison run_scenario(LinkSettings const& o, Combination const& c, std::string const& name,

@@ -5,8 +5,7 @@ namespace chapter3 {
 LinkSettings::LinkSettings() {
   selection.meshes = {2, 4, 8};
   selection.modes = {};
-  selection.steps = {1e-3, 5e-4, 2.5e-4};
-  selection.errors = {1e-1, 1e-2, 1e-3};
+  selection.steps = selection.tolerances = selection.errors = {};
   files = POLYBODY_TRACK_LINK_FILES;
 }
 

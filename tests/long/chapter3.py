@@ -38,5 +38,11 @@ CASES = {
         f"by_{integrator}": (PAGE, VEHICLE + f"--integrator {integrator} --until 0.1", lines)
         for integrator in ["generalised-alpha", "hht", "radau", "adams", "dormand-prince", "runge-kutta"]
     },
+    "pin_cost": (PAGE, VEHICLE + "--compare cost", lines),
+    "pin_cost_cables": (
+        PAGE,
+        VEHICLE + "--compare cost --body rigid,ancf --policy constraint,ancf-linear --integrator generalised-alpha",
+        lines,
+    ),
     "adams_pins": (PAGE, "track_times --until 0.2 --names", lines),
 }
