@@ -70,10 +70,12 @@ Extrapolation extrapolate(std::vector<std::vector<double> const*> const& y, std:
 }
 
 /// Extrapolates the output of a formulation over its meshes or its steps: `select(run)` returns the size of a run of
-/// this sequence, or zero for other runs. Adds a remark and returns nothing if the sequence does not converge.
+/// this sequence, or zero for other runs. If no order is observed, the limit is the last result, and its error bound is
+/// three times the larger one of the last two changes, if this bound is at most `small`. Otherwise the function adds a
+/// remark and returns nothing.
 template <class Select>
 std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string const& axis, double negligible,
-                                         Select&& select) {
+                                         double small, Select&& select) {
   std::vector<std::vector<double> const*> y;
   std::vector<double> sizes;
   for (StudyRun const& run : f.runs)
@@ -90,11 +92,14 @@ std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string cons
   Extrapolation out = extrapolate(y, sizes, negligible);
   if (out.converges) return out;
   std::size_t const n = y.size();
-  f.remarks.push_back("no reference: the output does not converge with the " + axis + ". It changes by " +
-                      number(largest_difference(*y[n - 1], *y[n - 2]), 3) + " between the two finest and by " +
-                      number(largest_difference(*y[n - 2], *y[n - 3]), 3) + " between the next two. Add finer " + axis +
-                      ".");
-  return std::nullopt;
+  double const last = largest_difference(*y[n - 1], *y[n - 2]), before = largest_difference(*y[n - 2], *y[n - 3]);
+  std::string const changes = "does not converge with the " + axis + ". It changes by " + number(last, 3) +
+                              " between the two finest and by " + number(before, 3) + " between the next two. ";
+  out.error = 3.0 * std::max(last, before);
+  out.converges = out.error <= small;
+  f.remarks.push_back(out.converges ? "the output " + changes + "The error bound is three times the larger change."
+                                    : "no reference: the output " + changes + "Add finer " + axis + ".");
+  return out.converges ? std::optional(out) : std::nullopt;
 }
 
 /// Computes the limit of a formulation with its error bound and observed orders.
@@ -102,7 +107,7 @@ template <class = void>
 void find_limit(StudiedFormulation& f, double span) {
   StudyRun const& fine = f.finest();
   if (fine.y.empty()) return;
-  double const negligible = std::max(1e-9 * span, f.spread);
+  double const negligible = std::max(1e-9 * span, f.spread), small = 1e-3 * span;
   std::vector<double> limit = fine.y;
   double error = 0.0;
   auto const add = [&](std::optional<Extrapolation> const& part, double& order) {
@@ -114,10 +119,10 @@ void find_limit(StudiedFormulation& f, double span) {
   };
   bool const in_space =
       f.mesh_name.empty() ||
-      add(limit_along(f, "meshes", negligible,
+      add(limit_along(f, "meshes", negligible, small,
                       [&](StudyRun const& run) { return run.step == fine.step ? 1.0 / double(run.mesh) : 0.0; }),
           f.mesh_order);
-  bool const in_time = add(limit_along(f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible,
+  bool const in_time = add(limit_along(f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible, small,
                                        [&](StudyRun const& run) { return run.mesh == fine.mesh ? run.step : 0.0; }),
                            f.step_order);
   if (!in_space || !in_time) return;
