@@ -87,8 +87,11 @@ struct Problem {
 };
 // Scenario of the problem in one formulation.
 Scenario<AnyModel> scenario_of(Problem const& problem, MakeMechanism const& make, FormulationMesh const& mesh);
-// Runs --list, or the case. Returns false if a run of 'run' or 'combinations' failed. Throws InvalidInput for a
-// combination that does not exist.
+// Adds the combination of a row with integrator number k to a study of the problem.
+void add_to(EqualErrorStudy& study, Problem const& problem, BodyOnPolicy const& row, std::size_t k,
+            std::string const& name, StudyEntry const& entry);
+// Runs --list, or the case. Returns false if a run of 'run' or 'combinations', or each run of 'compare' failed. Throws
+// InvalidInput for a combination that does not exist.
 bool run_formulations(FormulationOptions const& o, Problem const& problem);
 
 }  // namespace chapter2

@@ -266,8 +266,8 @@ struct StudiedArm {
 };
 
 // Converged differences between the beam with shear and rotary inertia and the cable with Green strain, in four parts:
-// rotary inertia, shear, formulation of the same equations, strain measure.
-void split(Options const& o, Problem const& problem) {
+// rotary inertia, shear, formulation of the same equations, strain measure. Returns false if every run fails.
+bool split(Options const& o, Problem const& problem) {
   EqualErrorStudy study({.elements = o.meshes, .steps = o.steps, .errors = {1e-1}, .repeats = 1});
   Bar const whole = bar(problem.setup.stiffness, problem.setup.density);
   Bar slender = whole;
@@ -288,7 +288,8 @@ void split(Options const& o, Problem const& problem) {
   study.add(StudiedArm{problem, whole},
             Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"Green", {}, implicit},
             {.model = "cable of Green strain"});
-  std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n" << study.run();
+  std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n";
+  return combinations::print_report(study.run());
 }
 
 Problem problem_of(Options const& o) {
@@ -336,7 +337,7 @@ int main(int argc, char** argv) {
     if (o.which == "all" || o.which == "equal-mesh") equal_meshes(o);
     if (o.which == "all" || o.which == "energy") energies(o);
     if (o.which == "all" || o.which == "bands") bands(o);
-    if (o.which == "split") split(o, problem_of(o));
+    if (o.which == "split" && !split(o, problem_of(o))) return 1;
   } catch (Error const& e) {
     std::cerr << "robot_arm: " << e.what() << '\n';
     return 1;

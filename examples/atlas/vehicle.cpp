@@ -103,7 +103,8 @@ Problem vehicle_pins() {
           .title = "Tracked vehicle with rigid links and five pin policies",
           .text = start +
                   "The output is the longitudinal force in a pin on the ground, pin 20 of the left track, from 0 to 3 "
-                  "s.\nA low-pass filter of 30 Hz (two Butterworth filters of second order in series) removes the impacts of single contacts.",
+                  "s.\nA low-pass filter of 30 Hz (two Butterworth filters of second order in series) removes the "
+                  "impacts of single contacts.",
           .question = {.output = "pin force x, 30 Hz [N]", .end_time = 3.0, .quick_end = 0.015},
           .model = "rigid links on ideal pins",
           .add = add_pins,

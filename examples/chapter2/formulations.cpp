@@ -95,7 +95,8 @@ bool run_combinations(Problem const& problem, Mechanisms const& all) {
   });
 }
 
-void compare_chosen(FormulationOptions const& o, Problem const& problem, Mechanisms const& all) {
+// Returns false if every run of the comparison fails.
+bool compare_chosen(FormulationOptions const& o, Problem const& problem, Mechanisms const& all) {
   CombinationStudy study(o);
   for (Choice const& choice : choices(all.table, o, {"lrvf", "ancf", "ancf-engineering"}))
     with_integrator(integrators, choice.integrator, [&](auto const& integrator) {
@@ -104,7 +105,8 @@ void compare_chosen(FormulationOptions const& o, Problem const& problem, Mechani
                   return scenario_of(problem, make, mesh);
                 });
     });
-  std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n" << study.run();
+  std::cout << problem.title() << ", 0 to " << number(problem.end_time) << " s.\n";
+  return print_report(study.run());
 }
 
 }  // namespace
@@ -153,6 +155,16 @@ std::string FormulationOptions::body_of_figures(std::vector<std::string> const& 
                      ". The cases 'run' and 'compare' accept a list of all bodies."};
 }
 
+void add_to(EqualErrorStudy& study, Problem const& problem, BodyOnPolicy const& row, std::size_t k,
+            std::string const& name, StudyEntry const& entry) {
+  with_integrator(integrators, k, [&](auto const& integrator) {
+    add_combination(
+        study, row.body.mesh, name, integrator,
+        [problem, make = row.make](FormulationMesh const& mesh) { return scenario_of(problem, make, mesh); },
+        row.mesh_of(16, 1), entry);
+  });
+}
+
 bool run_formulations(FormulationOptions const& o, Problem const& problem) {
   Mechanisms const all(problem.mechanism);
   if (o.list) {
@@ -161,8 +173,7 @@ bool run_formulations(FormulationOptions const& o, Problem const& problem) {
   }
   if (o.which == "run") return run_chosen(o, problem, all);
   if (o.which == "combinations") return run_combinations(problem, all);
-  compare_chosen(o, problem, all);
-  return true;
+  return compare_chosen(o, problem, all);
 }
 
 }  // namespace chapter2

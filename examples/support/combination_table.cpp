@@ -128,6 +128,15 @@ EqualErrorReport CombinationStudy::run() const {
   return report;
 }
 
+bool print_report(EqualErrorReport const& report) {
+  std::cout << report << std::flush;
+  for (StudiedFormulation const& f : report.formulations)
+    for (StudyRun const& run : f.runs)
+      if (run.failure.empty()) return true;
+  std::cerr << "Every run of the comparison failed. The lines above give the message of each formulation.\n";
+  return false;
+}
+
 std::string short_name(CombinationTable const& table, Choice const& choice, Selection const& s) {
   std::string name = table.rows[choice.row].body.name;
   if (!s.policies.empty()) name += ", " + table.rows[choice.row].policy;

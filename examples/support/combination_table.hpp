@@ -120,6 +120,21 @@ struct ErasedFormulation {
   FormulationMesh mesh;
 };
 
+// Adds a combination to a study. `finest` gives the number of elements of a body whose modes vary.
+template <MeshKind kind, class I>
+void add_of_kind(EqualErrorStudy& study, std::string const& name, I const& integrator, MakeScenario const& make,
+                 FormulationMesh const& finest, StudyEntry const& entry) {
+  study.add([make](ErasedFormulation<I, kind> const& f) { return make(f.mesh); },
+            ErasedFormulation<I, kind>{name, integrator, finest}, entry);
+}
+template <class I>
+void add_combination(EqualErrorStudy& study, MeshKind kind, std::string const& name, I const& integrator,
+                     MakeScenario const& make, FormulationMesh const& finest, StudyEntry const& entry) {
+  if (kind == MeshKind::none) add_of_kind<MeshKind::none>(study, name, integrator, make, finest, entry);
+  if (kind == MeshKind::elements) add_of_kind<MeshKind::elements>(study, name, integrator, make, finest, entry);
+  if (kind == MeshKind::modes) add_of_kind<MeshKind::modes>(study, name, integrator, make, finest, entry);
+}
+
 // Comparison of combinations at equal error.
 class CombinationStudy {
  public:
@@ -127,25 +142,19 @@ class CombinationStudy {
 
   template <class I>
   void add(BodyOnPolicy const& of, std::string const& name, I const& integrator, MakeScenario const& make) {
-    if (of.body.mesh == MeshKind::none) add_as<MeshKind::none>(of, name, integrator, make);
-    if (of.body.mesh == MeshKind::elements) add_as<MeshKind::elements>(of, name, integrator, make);
-    if (of.body.mesh == MeshKind::modes) add_as<MeshKind::modes>(of, name, integrator, make);
+    FormulationMesh const finest = of.mesh_of(selection_.meshes.back(), selection_.modes.back());
+    add_combination(study_, of.body.mesh, name, integrator, make, finest, {.model = of.body.model});
+    added_.push_back(of);
   }
   EqualErrorReport run() const;
 
  private:
-  template <MeshKind kind, class I>
-  void add_as(BodyOnPolicy const& of, std::string const& name, I const& integrator, MakeScenario const& make) {
-    FormulationMesh const finest = of.mesh_of(selection_.meshes.back(), selection_.modes.back());
-    study_.add([make](ErasedFormulation<I, kind> const& f) { return make(f.mesh); },
-               ErasedFormulation<I, kind>{name, integrator, finest}, {.model = of.body.model});
-    added_.push_back(of);
-  }
-
   Selection selection_;
   EqualErrorStudy study_;
   std::vector<BodyOnPolicy> added_ = {};
 };
+// Prints the report of a study. Returns false, after a sentence, if every run of the study failed.
+bool print_report(EqualErrorReport const& report);
 // Name of a formulation in a comparison: its body, with policy and integrator if they were selected.
 std::string short_name(CombinationTable const& table, Choice const& choice, Selection const& s);
 

@@ -54,8 +54,8 @@ Steps ten_steps(LinkSettings const& settings, Combination const& c) {
 }
 
 // The comparison at equal error of the selected combinations. Errors of Newton's method must be small beside those of
-// mesh and step.
-void compare_selected(LinkSettings o) {
+// mesh and step. Returns false if every run fails.
+bool compare_selected(LinkSettings o) {
   if (o.tolerance == 0.0) o.tolerance = 1e-9;
   auto const names = output_names();
   std::size_t const output = std::size_t(std::find(names.begin(), names.end(), o.output) - names.begin());
@@ -75,7 +75,8 @@ void compare_selected(LinkSettings o) {
       });
     });
   }
-  std::cout << "The vehicle at " << number(o.speed) << " rad/s, 0 to " << number(o.end_time) << " s.\n" << study.run();
+  std::cout << "The vehicle at " << number(o.speed) << " rad/s, 0 to " << number(o.end_time) << " s.\n";
+  return print_report(study.run());
 }
 
 }  // namespace
@@ -161,8 +162,7 @@ bool run_combinations(LinkSettings const& settings, std::string const& compariso
   if (comparison == "steps")
     return run_ten_steps(
         table(), [&](Choice const& choice) { return ten_steps(o, {all_links()[choice.row], choice.integrator}); });
-  compare_selected(o);
-  return true;
+  return compare_selected(o);
 }
 
 }  // namespace chapter3

@@ -147,12 +147,12 @@ void time_again(EqualErrorReport& r, std::vector<StudyRunner> const& runners, Eq
 /// Removes the output of the finest run of a formulation and adds a remark, if `interpolation_error` of this run
 /// exceeds the smallest wanted error `least` [unit of the output].
 template <class = void>
-void require_smooth(StudiedFormulation& f, double least, std::string const& output) {
+void require_smooth(EqualErrorReport const& r, StudiedFormulation& f, double least) {
   StudyRun& fine = f.runs.back();
   if (fine.y.empty() || fine.interpolation_error <= least) return;
-  f.remarks.push_back("no reference: the output \"" + output + "\" is not smooth: interpolation through every " +
-                      "second state changes it by " + number(fine.interpolation_error, 3) +
-                      ", but the smallest wanted error is " + number(least, 3) +
+  f.remarks.push_back("no reference: the output \"" + r.output + "\" is not smooth: interpolation through every " +
+                      "second state changes it by " + r.with_unit(fine.interpolation_error) +
+                      ", but the smallest wanted error is " + r.with_unit(least) +
                       ". Shorten the steps, or choose an output without jumps.");
   fine.y.clear();
 }
@@ -177,6 +177,17 @@ void find_span(EqualErrorReport& r, Select&& selects) {
     throw InvalidInput("equal_error.constant", {"EqualErrorStudy: the output \"", ErrorObject{r.output},
                                                 "\" is constant, so relative errors are undefined. Choose another "
                                                 "output."});
+}
+
+/// Removes limits whose error bound exceeds the span, and stores the span of the formulations that keep their limit.
+template <class = void>
+void refuse_limits(EqualErrorReport& r) {
+  double before = 0.0;
+  do {
+    before = r.span;
+    for (StudiedFormulation& f : r.formulations) refuse_limit(r, f);
+    find_span(r, [](StudiedFormulation const& f) { return !f.limit.empty(); });
+  } while (r.span < before);
 }
 
 /// Completes a simulation of a study and stores its results in `run`, and the times of the samples in `r`.
@@ -309,8 +320,8 @@ class EqualErrorStudy {
   }
 
   /// Runs all formulations with all meshes and steps and evaluates the results. A failed run, or a formulation without
-  /// a converged result, does not end the study. `failure` of the run, or the remarks of the formulation, give the
-  /// reason.
+  /// a converged result, does not end the study. A result has not converged if its error bound exceeds the span.
+  /// `failure` of the run, or the remarks of the formulation, give the reason.
   /// \throws InvalidInput if no formulation was added, or if the output of every complete run is constant.
   template <class = void>  // compiled where it is used
   EqualErrorReport run() const {
@@ -323,10 +334,10 @@ class EqualErrorStudy {
     detail::find_span(r, [](StudiedFormulation const& f) { return !f.finest().y.empty(); });
     double const least = *std::min_element(options_.errors.begin(), options_.errors.end()) * r.span;
     for (StudiedFormulation& f : r.formulations) {
-      detail::require_smooth(f, least, r.output);
-      detail::find_limit(f, r.span);
+      detail::require_smooth(r, f, least);
+      detail::find_limit(r, f);
     }
-    detail::find_span(r, [](StudiedFormulation const& f) { return !f.limit.empty(); });
+    detail::refuse_limits(r);
     detail::find_references(r);
     if (r.span > 0.0) detail::rank(r, options_.errors);
     detail::time_again(r, runners_, options_);

@@ -71,11 +71,11 @@ Extrapolation extrapolate(std::vector<std::vector<double> const*> const& y, std:
 
 /// Extrapolates the output of a formulation over its meshes or its steps: `select(run)` returns the size of a run of
 /// this sequence, or zero for other runs. If no order is observed, the limit is the last result, and its error bound is
-/// three times the larger one of the last two changes, if this bound is at most `small`. Otherwise the function adds a
-/// remark and returns nothing.
+/// three times the larger one of the last two changes, if this bound is at most a thousandth of the span. In both cases
+/// a remark gives the changes. Without a limit the function returns nothing.
 template <class Select>
-std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string const& axis, double negligible,
-                                         double small, Select&& select) {
+std::optional<Extrapolation> limit_along(EqualErrorReport const& r, StudiedFormulation& f, std::string const& axis,
+                                         double negligible, Select&& select) {
   std::vector<std::vector<double> const*> y;
   std::vector<double> sizes;
   for (StudyRun const& run : f.runs)
@@ -93,21 +93,21 @@ std::optional<Extrapolation> limit_along(StudiedFormulation& f, std::string cons
   if (out.converges) return out;
   std::size_t const n = y.size();
   double const last = largest_difference(*y[n - 1], *y[n - 2]), before = largest_difference(*y[n - 2], *y[n - 3]);
-  std::string const changes = "does not converge with the " + axis + ". It changes by " + number(last, 3) +
-                              " between the two finest and by " + number(before, 3) + " between the next two. ";
+  std::string const changes = "the output does not converge with the " + axis + ". It changes by " + r.with_unit(last) +
+                              " between the two finest and by " + r.with_unit(before) + " between the next two. ";
   out.error = 3.0 * std::max(last, before);
-  out.converges = out.error <= small;
-  f.remarks.push_back(out.converges ? "the output " + changes + "The error bound is three times the larger change."
-                                    : "no reference: the output " + changes + "Add finer " + axis + ".");
+  out.converges = out.error <= 1e-3 * r.span;
+  f.remarks.push_back(out.converges ? changes + "The error bound is three times the larger change."
+                                    : "no reference: " + changes + "Add finer " + axis + ".");
   return out.converges ? std::optional(out) : std::nullopt;
 }
 
 /// Computes the limit of a formulation with its error bound and observed orders.
 template <class = void>
-void find_limit(StudiedFormulation& f, double span) {
+void find_limit(EqualErrorReport const& r, StudiedFormulation& f) {
   StudyRun const& fine = f.finest();
   if (fine.y.empty()) return;
-  double const negligible = std::max(1e-9 * span, f.spread), small = 1e-3 * span;
+  double const negligible = std::max(1e-9 * r.span, f.spread);
   std::vector<double> limit = fine.y;
   double error = 0.0;
   auto const add = [&](std::optional<Extrapolation> const& part, double& order) {
@@ -119,15 +119,34 @@ void find_limit(StudiedFormulation& f, double span) {
   };
   bool const in_space =
       f.mesh_name.empty() ||
-      add(limit_along(f, "meshes", negligible, small,
+      add(limit_along(r, f, "meshes", negligible,
                       [&](StudyRun const& run) { return run.step == fine.step ? 1.0 / double(run.mesh) : 0.0; }),
           f.mesh_order);
-  bool const in_time = add(limit_along(f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible, small,
+  bool const in_time = add(limit_along(r, f, f.step_name == "tolerance" ? "tolerances" : "steps", negligible,
                                        [&](StudyRun const& run) { return run.mesh == fine.mesh ? run.step : 0.0; }),
                            f.step_order);
   if (!in_space || !in_time) return;
   f.limit = std::move(limit);
   f.limit_error = error;
+}
+
+/// Removes the limit of a formulation and adds a remark, if its error bound exceeds the span of the output.
+template <class = void>
+void refuse_limit(EqualErrorReport const& r, StudiedFormulation& f) {
+  if (f.limit.empty() || f.limit_error <= r.span) return;
+  std::string orders;
+  auto const add = [&](double order, std::string const& axis) {
+    if (!std::isnan(order))
+      orders += (orders.empty() ? " The observed order is " : " and ") + number(order, 2) + " in the " + axis;
+  };
+  add(f.mesh_order, "mesh");
+  add(f.step_order, f.step_name == "tolerance" ? "tolerance" : "step");
+  f.remarks.push_back("no reference: the output \"" + r.output + "\" of \"" + f.name +
+                      "\" does not converge. The error bound of its limit, " + r.with_unit(f.limit_error) +
+                      ", exceeds the span, " + r.with_unit(r.span) + '.' + orders + (orders.empty() ? "" : ".") +
+                      " Add finer meshes and shorter steps.");
+  f.limit.clear();
+  f.limit_error = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Selects the reference of each physical model, and computes discretisation errors and differences of the models.
@@ -153,8 +172,8 @@ void find_references(EqualErrorReport& r) {
       double const apart = largest_difference(f.limit, r.reference(k));
       if (apart > f.limit_error + reference.error + f.spread)
         f.remarks.push_back("its limit differs from that of \"" + r.formulations[reference.formulation].name +
-                            "\" by " + number(apart, 3) + ", more than the sum of the error bounds, " +
-                            number(f.limit_error + reference.error, 3) +
+                            "\" by " + r.with_unit(apart) + ", more than the sum of the error bounds, " +
+                            r.with_unit(f.limit_error + reference.error) +
                             ", although both have the same physical model. Use finer meshes and shorter steps.");
     }
   for (std::size_t a = 0; a < r.references.size(); ++a)

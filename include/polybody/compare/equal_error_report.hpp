@@ -114,6 +114,11 @@ struct EqualErrorReport {
     std::size_t const at = output.rfind(" [");
     return at == std::string::npos ? std::string() : output.substr(at + 1);
   }
+  /// Text of x with the unit of the output without brackets, such as "0.3 m". \param x value [unit of the output]
+  std::string with_unit(double x, int digits = 3) const {
+    std::string const brackets = unit();
+    return number(x, digits) + (brackets.size() > 2 ? ' ' + brackets.substr(1, brackets.size() - 2) : std::string());
+  }
 };
 
 /// Largest difference of two histories with the same times. \param a first history \param b second history
@@ -140,6 +145,12 @@ inline double order_between(double coarse_error, double fine_error, double coars
 /// Text of x in a cell, "-" if x is not finite.
 inline std::string cell(double x, int digits = 3) { return std::isfinite(x) ? number(x, digits) : "-"; }
 
+/// Unit of the output after a space, such as " [m]"; empty if the output has no unit.
+template <class = void>
+std::string unit_in_head(EqualErrorReport const& r) {
+  return r.unit().empty() ? std::string() : ' ' + r.unit();
+}
+
 /// Prints rows of cells in aligned columns: the first one to the left, the others to the right.
 template <class = void>
 void print_rows(std::ostream& out, std::vector<std::vector<std::string>> const& rows) {
@@ -165,8 +176,8 @@ void print_rows(std::ostream& out, std::vector<std::vector<std::string>> const& 
 template <class = void>
 void print_rankings(std::ostream& out, EqualErrorReport const& r) {
   for (Ranking const& ranking : r.rankings) {
-    out << "\nError of at most " << number(ranking.wanted, 3) << " of the span, " << number(ranking.wanted * r.span, 3)
-        << ' ' << r.unit() << ":\n";
+    out << "\nError of at most " << number(ranking.wanted, 3) << " of the span, "
+        << r.with_unit(ranking.wanted * r.span) << ":\n";
     std::vector<std::vector<std::string>> rows{{"formulation", "mesh, step", "CPU [s]", "least", "most", "ratio",
                                                 "error", "unknowns", "iterations", "factorisations"}};
     for (CheapestRun const& at : ranking.ranked) {
@@ -186,8 +197,8 @@ void print_rankings(std::ostream& out, EqualErrorReport const& r) {
 
 template <class = void>
 void print_meshes(std::ostream& out, EqualErrorReport const& r) {
-  out << "\nDiscretisation error with the shortest step, compared with the reference of the same physical model "
-      << r.unit() << ":\n";
+  out << "\nDiscretisation error with the shortest step, compared with the reference of the same physical model"
+      << unit_in_head(r) << ":\n";
   std::vector<std::vector<std::string>> rows{{"formulation", "mesh", "error", "order"}};
   for (StudiedFormulation const& f : r.formulations) {
     if (f.mesh_name.empty()) continue;
@@ -210,16 +221,18 @@ void print_meshes(std::ostream& out, EqualErrorReport const& r) {
 /// physical models. A difference below its error bound is printed as "not resolved".
 template <class = void>  // compiled where it is used
 std::ostream& operator<<(std::ostream& out, EqualErrorReport const& r) {
-  out << "Comparison at equal error. Output: " << r.output << ", span " << number(r.span, 4) << ".\n";
+  out << "Comparison at equal error.";
+  if (!r.output.empty()) out << " Output: " << r.output << ", span " << r.with_unit(r.span, 4) << '.';
+  out << '\n';
   if (r.rankings.empty()) out << "\nNo run with the finest mesh and the shortest step is complete.\n";
   detail::print_rankings(out, r);
   detail::print_meshes(out, r);
-  out << "\nReferences of the physical models " << r.unit() << ":\n";
+  out << "\nReferences of the physical models" << detail::unit_in_head(r) << ":\n";
   std::vector<std::vector<std::string>> rows{{"physical model", "formulation", "error bound"}};
   for (ModelReference const& reference : r.references)
     rows.push_back({reference.model, r.formulations[reference.formulation].name, detail::cell(reference.error)});
   detail::print_rows(out, rows);
-  if (!r.differences.empty()) out << "\nDifferences between the physical models " << r.unit() << ":\n";
+  if (!r.differences.empty()) out << "\nDifferences between the physical models" << detail::unit_in_head(r) << ":\n";
   rows = {{"first", "second", "difference", "error bound"}};
   for (ModelDifference const& d : r.differences)
     rows.push_back({r.references[d.a].model, r.references[d.b].model,

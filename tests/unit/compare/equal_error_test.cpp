@@ -144,6 +144,8 @@ struct Flawed {
       double const y = tip(m, x) + std::sin(x.t);
       if (name == "fails") throw InvalidInput("test.failure", {ErrorObject{"gauge"}, " is broken."});
       if (name == "jumps") return x.t < 0.51 ? y : y + 1.0;
+      // order 0.17 in the mesh: the finest result, with 8 elements, is 1.4 m from the limit at 1 s
+      if (name == "slow") return y + 2.0 * x.t * (std::pow(elements, -0.17) - std::pow(8.0, -0.17));
       return name == "diverges" ? y + elements * x.t : y;
     };
     return scenario;
@@ -157,29 +159,39 @@ TEST(EqualError, BoundsSmallChangesWithoutAnOrder) {
   for (double const y : {1.0, 1.0001, 0.9999})
     f.runs.push_back({.step = 0.1 / double(f.runs.size() + 1), .y = {0.0, y}});
   StudiedFormulation coarse = f;
-  detail::find_limit(f, 1.0);
+  EqualErrorReport r{.output = "tip x [m]", .span = 1.0};
+  detail::find_limit(r, f);
   EXPECT_EQ(f.limit, f.runs.back().y);
   EXPECT_NEAR(f.limit_error, 3.0 * 2e-4, 1e-12);
   EXPECT_TRUE(std::isnan(f.step_order));
   EXPECT_TRUE(has(f.remarks.at(0), "three times the larger change"));
-  detail::find_limit(coarse, 0.1);
+  r.span = 0.1;
+  detail::find_limit(r, coarse);
   EXPECT_TRUE(coarse.limit.empty());
   EXPECT_TRUE(has(coarse.remarks.at(0), "no reference: the output does not converge with the steps"));
 }
 
 TEST(EqualError, KeepsTheOtherResultsIfAFormulationFails) {
   EqualErrorStudy study({.elements = {2, 4, 8}, .steps = {0.05, 0.025, 0.0125}, .errors = {1e-2}, .repeats = 1});
-  for (char const* name : {"fails", "diverges", "jumps", "sound"})
+  for (char const* name : {"fails", "diverges", "jumps", "sound", "slow"})
     study.add(Flawed{}, Engineering{name}, {.model = name});
   EqualErrorReport const r = study.run();
   ASSERT_EQ(r.references.size(), 1u);
   EXPECT_EQ(r.references[0].model, "sound");
   EXPECT_TRUE(has(r.formulations[0].remarks.at(0), "gauge is broken"));
-  EXPECT_TRUE(has(r.formulations[1].remarks.at(0), "does not converge with the meshes"));
+  EXPECT_TRUE(has(r.formulations[1].remarks.at(0), "does not converge with the meshes. It changes by 4 m between"));
   EXPECT_TRUE(has(r.formulations[2].remarks.at(0), "is not smooth"));
+  EXPECT_TRUE(has(r.formulations[2].remarks.at(0), " m, but the smallest wanted error is 0.0"));
+  EXPECT_TRUE(std::isnan(r.formulations[4].limit_error));
+  std::string const slow = r.formulations[4].remarks.at(0);
+  EXPECT_TRUE(has(slow,
+                  "the output \"tip x [m]\" of \"slow\" does not converge. The error bound of its limit, 1.4 m, "
+                  "exceeds the span, 0.84"))
+      << slow;
+  EXPECT_TRUE(has(slow, " m. The observed order is 0.17 in the mesh and ")) << slow;
   ASSERT_EQ(r.rankings[0].ranked.size(), 1u);
   EXPECT_EQ(r.rankings[0].ranked[0].formulation, 3u);
-  EXPECT_EQ(r.rankings[0].missing.size(), 3u);
+  EXPECT_EQ(r.rankings[0].missing.size(), 4u);
 }
 
 // If each formulation fails, the report has the reasons and no ranking.
