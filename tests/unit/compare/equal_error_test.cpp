@@ -159,7 +159,9 @@ TEST(EqualError, BoundsSmallChangesWithoutAnOrder) {
   for (double const y : {1.0, 1.0001, 0.9999})
     f.runs.push_back({.step = 0.1 / double(f.runs.size() + 1), .y = {0.0, y}});
   StudiedFormulation coarse = f;
-  EqualErrorReport r{.output = "tip x [m]", .span = 1.0};
+  EqualErrorReport r;
+  r.output = "tip x [m]";
+  r.span = 1.0;
   detail::find_limit(r, f);
   EXPECT_EQ(f.limit, f.runs.back().y);
   EXPECT_NEAR(f.limit_error, 3.0 * 2e-4, 1e-12);
