@@ -149,8 +149,8 @@ Table round_off_table(Problem const& problem, EqualErrorReport const& r) {
           1};
   for (StudiedFormulation const& f : r.formulations)
     if (problem.has_contacts && !f.finest().y.empty())
-      t.rows.push_back({Cell::of(f.name), Cell::number(f.spread, 1, 9.0 * f.spread),
-                        Cell::number(f.spread / r.span, 1, 9.0 * f.spread / r.span)});
+      t.rows.push_back({Cell::of(f.name), Cell::number(f.spread, 1, 9.0 * f.spread + 1e-9 * r.span),
+                        Cell::number(f.spread / r.span, 1, 9.0 * f.spread / r.span + 1e-9)});
   return t;
 }
 
