@@ -27,7 +27,7 @@ struct Options {
 std::vector<Problem> all_problems() {
   return {robot_arm(),  cantilever(),        princeton_beam(), curved_cantilever(), rotating_cantilever(),
           flying_rod(), spinning_pendulum(), slider_crank(),   four_bar(),          lateral_buckling(),
-          chain()};
+          chain(),      vehicle_pins(),      vehicle_links()};
 }
 
 void print_list(std::vector<Problem> const& problems) {
@@ -37,7 +37,7 @@ void print_list(std::vector<Problem> const& problems) {
 }
 
 Done run(Problem const& problem, Options const& o, std::vector<ExternalResult> const& external) {
-  EqualErrorStudy study({.modes = {1, 2, 4}, .repeats = o.quick ? 1 : 5});
+  EqualErrorStudy study({.modes = {1, 2, 4}, .repeats = o.quick ? 1 : 5, .samples = problem.question.samples(o.quick)});
   Formulations formulations(study, problem.question, o.quick);
   problem.add(formulations);
   Done done{problem, formulations.run(), {.machine = o.machine}};

@@ -148,6 +148,20 @@ Table difference_table(EqualErrorReport const& r) {
   return t;
 }
 
+// The effect of round-off differs between compilers, so the check compares its order of magnitude.
+Table round_off_table(Problem const& problem, EqualErrorReport const& r) {
+  Table t{"Effect of round-off",
+          "Largest change of the output if each initial coordinate changes by one unit in the last place, with the "
+          "finest mesh and the shortest step. Smaller errors and differences cannot be ranked.",
+          {"formulation", "change " + r.unit(), "relative to the span"},
+          1};
+  for (StudiedFormulation const& f : r.formulations)
+    if (problem.has_contacts && !f.finest().y.empty())
+      t.rows.push_back({Cell::of(f.name), Cell::number(f.spread, 1, 9.0 * f.spread + 1e-9 * r.span),
+                        Cell::number(f.spread / r.span, 1, 9.0 * f.spread / r.span + 1e-9)});
+  return t;
+}
+
 Table known_table(Problem const& problem, EqualErrorReport const& r) {
   Table t{"Known answers",
           "Converged result at the end of the run, compared with an independent source.",
@@ -274,13 +288,18 @@ std::vector<std::string> check_row(TextRow const& row, Done const& done, Table c
 
 }  // namespace
 
-Table coarse_table(EqualErrorReport const& r) {
+Table coarse_table(Done const& done) {
+  EqualErrorReport const& r = done.report;
+  Question const& q = done.problem.question;
+  std::string const end = q.quick_end > 0.0 ? "at " + number(q.quick_end) + " s " : "at the end ",
+                    until = q.quick_end > 0.0 ? "largest magnitude until then " : "largest magnitude ";
   Table t{"Coarsest settings",
           "Results with the coarsest mesh and the longest step, which `atlas --quick --check` computes again.",
-          {"formulation", "mesh, step", "at the end " + r.unit(), "largest magnitude " + r.unit(), "unknowns"},
+          {"formulation", "mesh, step", end + r.unit(), until + r.unit(), "unknowns"},
           2};
   for (StudiedFormulation const& f : r.formulations) {
-    StudyRun const& run = f.runs.front();
+    StudyRun run = f.runs.front();
+    if (!run.y.empty()) run.y.resize(std::size_t(q.samples(true)) + 1);
     double largest = 0.0;
     for (double const y : run.y) largest = std::max(largest, std::abs(y));
     double const tolerance = 1e-4 * largest + 1e-9;
@@ -296,9 +315,15 @@ Table coarse_table(EqualErrorReport const& r) {
 
 std::vector<Table> tables_of(Done const& done) {
   EqualErrorReport const& r = done.report;
-  return {settings_table(r),   cheapest_table(done.problem, r), unranked_table(r),
-          difference_table(r), known_table(done.problem, r),    remark_table(done.problem, r),
-          coarse_table(r),     external_table(done.others, r)};
+  return {settings_table(r),
+          cheapest_table(done.problem, r),
+          unranked_table(r),
+          difference_table(r),
+          round_off_table(done.problem, r),
+          known_table(done.problem, r),
+          remark_table(done.problem, r),
+          coarse_table(done),
+          external_table(done.others, r)};
 }
 
 void write_page(Done const& done, fs::path const& folder) {
@@ -315,7 +340,7 @@ std::vector<std::string> check_page(Done const& done, fs::path const& folder, bo
   auto const add = [&](std::vector<std::string> const& more) { faults.insert(faults.end(), more.begin(), more.end()); };
   try {
     std::string_view const page = part_of(text);
-    if (quick) add(differences(coarse_table(done.report), page));
+    if (quick) add(differences(coarse_table(done), page));
     for (Table const& table : tables_of(done)) {
       if (quick) break;
       bool const shown = page.find("## " + table.title + '\n') != page.npos;

@@ -18,7 +18,7 @@ struct Done {
 // Tables of a page. The check treats the table "Cheapest settings" apart.
 std::vector<Table> tables_of(Done const& done);
 // The table that a quick run computes again.
-Table coarse_table(EqualErrorReport const& report);
+Table coarse_table(Done const& done);
 
 // Writes the part of the page docs/atlas/<problem>.md between the markers. A page that does not exist begins with the
 // title and the text of the problem.

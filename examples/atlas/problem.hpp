@@ -1,5 +1,6 @@
 #pragma once
 // A problem of the atlas: its formulations with their meshes and steps, its output and answers that are known.
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -52,6 +53,11 @@ struct Question {
   std::string output;  // name with unit
   double end_time;     // [s]
   double rho_inf = 0.8;
+  double quick_end = 0.0;  // end of a quick run, one of the sampled times of the full run [s]; 0: `end_time`
+
+  double end(bool quick) const { return quick && quick_end > 0.0 ? quick_end : end_time; }
+  // Number of intervals between the sampled times. Both runs have the same times.
+  Index samples(bool quick) const { return Index(std::lround(400.0 * end(quick) / end_time)); }
 };
 
 // A formulation that does not apply to a problem.
@@ -71,12 +77,12 @@ class Formulations {
            Index elements = 16) {
     combinations::ErasedFormulation<GeneralisedAlpha, kind, B, P> const formulation{
         name, {.rho_inf = question_.rho_inf}, {.elements = elements}};
-    auto const make_case = [q = question_, make](auto const& f) {
+    auto const make_case = [output = question_.output, end_time = question_.end(quick_), make](auto const& f) {
       AnyCase const made = make(f.mesh);
       return Scenario<AnyModel>{made.model,
                                 made.start,
-                                {.end_time = q.end_time, .step = 1.0, .max_step_halvings = 6},
-                                {{q.output, [y = made.output](AnyModel const&, State const& x) { return y(x); }}}};
+                                {.end_time = end_time, .step = 1.0, .max_step_halvings = 6},
+                                {{output, [y = made.output](AnyModel const&, State const& x) { return y(x); }}}};
     };
     study_.add(make_case, formulation, entry(model, settings));
   }
@@ -130,6 +136,7 @@ struct Problem {
   std::function<void(Formulations&)> add = {};
   std::vector<KnownAnswer> known = {};
   std::vector<Excluded> excluded = {};
+  bool has_contacts = false;  // true: contacts amplify round-off, and the page gives the effect of round-off
 };
 
 // The problems, one function per source file.
@@ -144,5 +151,7 @@ Problem slider_crank();
 Problem four_bar();
 Problem lateral_buckling();
 Problem chain();
+Problem vehicle_pins();
+Problem vehicle_links();
 
 }  // namespace atlas

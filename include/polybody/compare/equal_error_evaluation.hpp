@@ -70,7 +70,9 @@ Extrapolation extrapolate(std::vector<std::vector<double> const*> const& y, std:
 }
 
 /// Extrapolates the output of a formulation over its meshes or its steps: `select(run)` returns the size of a run of
-/// this sequence, or zero for other runs. Adds a remark and returns nothing if the sequence does not converge.
+/// this sequence, or zero for other runs. If no order is observed, the limit is the last result, and its error bound is
+/// three times the larger one of the last two changes, if this bound is at most a thousandth of the span. In both cases
+/// a remark gives the changes. Without a limit the function returns nothing.
 template <class Select>
 std::optional<Extrapolation> limit_along(EqualErrorReport const& r, StudiedFormulation& f, std::string const& axis,
                                          double negligible, Select&& select) {
@@ -90,11 +92,14 @@ std::optional<Extrapolation> limit_along(EqualErrorReport const& r, StudiedFormu
   Extrapolation out = extrapolate(y, sizes, negligible);
   if (out.converges) return out;
   std::size_t const n = y.size();
-  f.remarks.push_back("no reference: the output does not converge with the " + axis + ". It changes by " +
-                      r.with_unit(largest_difference(*y[n - 1], *y[n - 2])) + " between the two finest and by " +
-                      r.with_unit(largest_difference(*y[n - 2], *y[n - 3])) + " between the next two. Add finer " +
-                      axis + ".");
-  return std::nullopt;
+  double const last = largest_difference(*y[n - 1], *y[n - 2]), before = largest_difference(*y[n - 2], *y[n - 3]);
+  std::string const changes = "the output does not converge with the " + axis + ". It changes by " + r.with_unit(last) +
+                              " between the two finest and by " + r.with_unit(before) + " between the next two. ";
+  out.error = 3.0 * std::max(last, before);
+  out.converges = out.error <= 1e-3 * r.span;
+  f.remarks.push_back(out.converges ? changes + "The error bound is three times the larger change."
+                                    : "no reference: " + changes + "Add finer " + axis + ".");
+  return out.converges ? std::optional(out) : std::nullopt;
 }
 
 /// Computes the limit of a formulation with its error bound and observed orders.

@@ -152,6 +152,27 @@ struct Flawed {
   }
 };
 
+// Results without an order have a limit if their changes are small compared with the span.
+TEST(EqualError, BoundsSmallChangesWithoutAnOrder) {
+  StudiedFormulation f;
+  f.step_name = "step [s]";
+  for (double const y : {1.0, 1.0001, 0.9999})
+    f.runs.push_back({.step = 0.1 / double(f.runs.size() + 1), .y = {0.0, y}});
+  StudiedFormulation coarse = f;
+  EqualErrorReport r;
+  r.output = "tip x [m]";
+  r.span = 1.0;
+  detail::find_limit(r, f);
+  EXPECT_EQ(f.limit, f.runs.back().y);
+  EXPECT_NEAR(f.limit_error, 3.0 * 2e-4, 1e-12);
+  EXPECT_TRUE(std::isnan(f.step_order));
+  EXPECT_TRUE(has(f.remarks.at(0), "three times the larger change"));
+  r.span = 0.1;
+  detail::find_limit(r, coarse);
+  EXPECT_TRUE(coarse.limit.empty());
+  EXPECT_TRUE(has(coarse.remarks.at(0), "no reference: the output does not converge with the steps"));
+}
+
 TEST(EqualError, KeepsTheOtherResultsIfAFormulationFails) {
   EqualErrorStudy study({.elements = {2, 4, 8}, .steps = {0.05, 0.025, 0.0125}, .errors = {1e-2}, .repeats = 1});
   for (char const* name : {"fails", "diverges", "jumps", "sound", "slow"})
