@@ -5,7 +5,7 @@ reports the sentences that a reader has to read twice. One strong rule or two we
 
 prose_allowed.txt gives the allowed number of findings per file; a file without an entry may have none. The list only
 shrinks: --shrink lowers its numbers. --list prints the findings of the given files. Dates, commit hashes and machines are
-findings in every page outside docs/notes.
+findings in every page outside docs/notes. Pages in LONGEST have at most the given number of words.
 
 """
 
@@ -19,6 +19,8 @@ LIST = HERE / "prose_allowed.txt"
 NEVER = re.compile(r"README\.md|docs/(guide/.*|using|overview|glossary|migration)\.md")  # no entry in the list
 DIARY_ALLOWED = re.compile(r"docs/notes/|CHANGELOG\.md|docs/validation\.md|LICENSE")
 SKIPPED = re.compile(r"docs/(validation|notes/.*)\.md|cmake/viewer/")
+
+LONGEST = {"docs/performance.md": 1200, "docs/reliability.md": 900, "docs/track_stress.md": 2000}  # words of a page
 
 PRONOUN = r"(?:it|they|that|this|these|those|there|one|none|no|nothing|both|some|each|every|an?|the|its|their)"
 VERB = r"(?:is|are|was|were|has|have|does|do|may|must|can|cannot|goes?|comes?|takes?|gets?|stays?|leaves?|begins?|lies)"
@@ -164,6 +166,22 @@ def findings(root, name):
     return found
 
 
+def words(text):
+    """Number of words that a reader of a page sees: text separated by spaces, with a letter or a digit.
+
+    Headings and cells of tables count. Blocks of code, comments and addresses of links do not count."""
+    text = re.sub(r"<!--.*?-->|^```.*?^```|(?<=\])\([^)]*\)", "", text, flags=re.S | re.M)
+    return sum(bool(re.search(r"\w", word)) for word in text.replace("|", " ").split())
+
+
+def too_long(root):
+    for name, most in LONGEST.items():
+        if not (root / name).is_file():
+            yield f"{name}: listed in LONGEST, but not a file of the project"
+        elif (count := words((root / name).read_text(encoding="utf-8"))) > most:
+            yield f"{name}: {count} words, at most {most} are allowed; move details to docs/notes"
+
+
 def files(root):
     listed = subprocess.run(
         ["git", "-C", str(root), "ls-files", "*.md", "*.hpp", "*.cpp", "*.cmake"], capture_output=True, text=True
@@ -189,6 +207,7 @@ def check(root):
         elif len(found) < most:
             yield f"{name}: only {len(found)} findings left of {most}: lower the number in {LIST.name} (--shrink)"
     yield from (f"{name}: listed in {LIST.name}, but not a file of the project" for name in old)
+    yield from too_long(root)
     print(f"{total} sentences to rewrite")
 
 

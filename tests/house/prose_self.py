@@ -55,6 +55,7 @@ with tempfile.TemporaryDirectory() as folder:
     require([f.split(":")[1] for f in prose.findings(root, "README.md")] == ["4"], "a page")
 
     prose.files = lambda _: ["a.hpp", "README.md"]
+    prose.LONGEST = {"README.md": 8}
     prose.LIST = root / "allowed.txt"
     for entries, faults in {
         "a.hpp 2\n": "README.md: 1 sentences to rewrite, 0 allowed",
@@ -67,6 +68,13 @@ with tempfile.TemporaryDirectory() as folder:
     prose.LIST.write_text("# head\na.hpp 3\n")
     prose.shrink(root)
     require(prose.LIST.read_text() == "# head\na.hpp 2\n", "--shrink")
+
+    prose.LONGEST = {"README.md": 7, "gone.md": 9}
+    found = [f for f in prose.check(root) if "a.hpp" not in f]
+    require([f.split(",")[0] for f in found[2:]] == ["README.md: 8 words", "gone.md: listed in LONGEST"], f"too long: {found}")
+
+PAGE = "# A head\n\n[Two words](a/long/path.md#with-a-place), `code` – 1.5<!--of/a/case-->\n\n```sh\nnot counted\n```\n| a cell | 3.0 |\n|---|---|\n"
+require(prose.words(PAGE) == 9, f"{prose.words(PAGE)} words")
 
 CHANGES = "# Changelog\n\n## Unreleased\n\n> **Breaking, migration**\n>\n> - A.\n\n### Added\n\n- {}\n\n## 0.2.0 - 2026-11-27\n\n### Fixed\n\n- B.\n"
 require(not list(changelog.faults(CHANGES.format("Forty words. " * 20))), "a correct changelog is reported")

@@ -1,16 +1,17 @@
-"""The long runs of docs/track_stress.md."""
+"""The long runs of docs/track_stress.md and of its note. Numbers of a case may be marked in both."""
 
 import re
 
 from reading import by_pattern, columns, markdown
 
 PAGE = "docs/track_stress.md"
+NOTE = "docs/notes/track_stress-2026-11.md"
 PINS = ["constraint", "penalty", "bushing", "ancf-linear", "joint-coordinates"]
 REASONS = {  # by the first words of the sentence
-    "AncfLinear needs markers that are linear": "not linear",
-    "JointCoordinates supports joints between": "no frame to carry",
-    "This joint needs a marker with axes": "no frame at its ends",
-    "The slope vector that neighbouring links share": "fixed in the world",
+    "AncfLinear needs markers that are linear": "nonlinear",
+    "JointCoordinates supports joints between": "no frame",
+    "This joint needs a marker with axes": "tangent only",
+    "The slope vector that neighbouring links share": "fixed direction",
 }
 
 
@@ -29,7 +30,7 @@ def matrix(text):
         speeds, rows, _, _, _, forward, strain, force, gap, energy, *turning = map(float, words[2:])
         numbers[f"{words[0]} {words[1]}"] = {"speeds": speeds, "rows": rows, "forward": forward, "strain": strain,
                                              "force": force, "gap": gap, "energy": energy, **({"turning": turning[0]} if turning else {})}
-        cells[words[0], words[1]] = f"{turning[0]:.5f}" if turning else f"{forward:.4f} m, {strain:.3f}"
+        cells[words[0], words[1]] = f"{turning[0]:.5f}" if turning else f"{strain:.3f}"
     summary = re.search(r"(\d+) run, (\d+) cannot be.*within ([\d.]+) mm, strains within ([\d.]+) %.*at most ([\d.]+) %", text)
     numbers["all"] = dict(zip(["run", "refused", "apart", "strains apart", "energy"], map(float, summary.groups())))
     if turned := re.search(r"Yaw rates within ([\d.]+) %", text):
@@ -104,7 +105,8 @@ links = rows_of({
     "unexplained energy [%]": lambda of: f"{of['energy']:.3f}",
     "halved steps, of 10⁴": lambda of: f"{of['halved']:.0f}",
     "cycles of stress": lambda of: f"{of['cycles']:.0f}",
-    "largest range, equivalent range [MPa]": lambda of: f"{of['largest range']:.2f}, {of['equivalent range']:.3f}",
+    "largest range [MPa]": lambda of: f"{of['largest range']:.2f}",
+    "equivalent range [MPa]": lambda of: f"{of['equivalent range']:.3f}",
 })
 halve = by_pattern({("both", "apart"): r"filtered strain ([\d.]+) % apart"})
 twenty = by_pattern({
@@ -139,12 +141,12 @@ def worst_term(column, left_out=()):
 
 
 surface = columns(28, ["mean decoupled", "mean coupled", "most decoupled", "most coupled", "apart from 1 s", "apart", "apart, low pass"],
-                  ["node", "mean, decoupled", "mean, coupled", "maximum, decoupled", "maximum, coupled", "difference, rms from 1 s on [%]",
+                  ["node", "mean, decoupled", "mean, coupled", "maximum, decoupled", "maximum, coupled", "rms difference [%]",
                    "difference below 15 Hz [%]"],
                   {"mean decoupled": 3, "mean coupled": 3, "most decoupled": 3, "most coupled": 3, "apart from 1 s": 1, "apart, low pass": 1})
 terms = columns(52, ["strain", "low pass", "raw", "bending", "energy"],
-                ["floating frames with", "strain [10⁻⁵]", "strain difference below 15 Hz [%]", "strain difference, unfiltered [%]",
-                 "bending difference [%]", "unexplained energy [%]"],
+                ["floating frames with", "strain [10⁻⁵]", "difference below 15 Hz [%]", "unfiltered [%]", "bending [%]",
+                 "unexplained energy [%]"],
                 {"strain": 4, "low pass": 2, "raw": 2, "bending": 2, "energy": 4})
 ensemble = columns(26, ["decoupled", "vibrating", "coupled", "ratio", "off", "vibrating off", "largest decoupled", "largest coupled",
                         "equivalent decoupled", "equivalent coupled"],
@@ -168,26 +170,26 @@ STIFFNESS = {"all": {"ratio off": lambda numbers: max(100.0 * abs(of["ratio"] - 
 TERMS = {"others": {"raw": worst_term("raw", BENT), "bending": worst_term("bending", BENT)}, "each": {"low pass": worst_term("low pass")}}
 
 stiffness = columns(12, ["axial", "decoupled", "coupled", "ratio", "off", "apart"],
-                    ["E, divided by that of steel", "EA/p [MN/m]", "decoupled [10⁻⁵]", "coupled [10⁻⁵]", "ratio of decoupled to coupled",
-                     "difference, rms [%]", "difference of the final positions [mm]"],
+                    ["E / E of steel", "EA/p [MN/m]", "decoupled [10⁻⁵]", "coupled [10⁻⁵]", "ratio", "difference, rms [%]",
+                     "positions apart [mm]"],
                     {"axial": 1, "decoupled": 3, "coupled": 3, "ratio": 3, "off": 1, "apart": 1})
 
 CASES = {
     "matrix": (PAGE, "track_stress --compare matrix --until 3 --no-plot", matrix),
-    "matrix_turn": (PAGE, "track_stress --compare matrix --turn curve --until 3 --no-plot", matrix),
+    "matrix_turn": (NOTE, "track_stress --compare matrix --turn curve --until 3 --no-plot", matrix),
     "matrix_pivot": (PAGE, "track_stress --compare matrix --turn pivot --speed 10 --until 3 --no-plot", numbers_of(matrix)),
     "links_bumps": (PAGE, "track_stress --compare links --bumps --audit --until 7 --no-plot", report),
     "surface_30": (PAGE, "track_stress --compare surface --until 10 --no-plot", with_rows(surface, SURFACE)),
-    "surface_80": (PAGE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
+    "surface_80": (NOTE, "track_stress --compare surface --until 10 --speed 80 --no-plot", with_rows(surface, SURFACE)),
     "terms": (PAGE, "track_stress --compare terms --until 4 --speed 80 --no-plot", with_rows(terms, TERMS)),
     "stiffness": (PAGE, "track_stress --compare stiffness --until 4 --no-plot", with_rows(stiffness, STIFFNESS)),
-    "links_30": (PAGE, "track_stress --compare --audit --fatigue --no-plot", links),
-    "links_80": (PAGE, "track_stress --compare --audit --fatigue --speed 80 --no-plot", links),
+    "links_30": (NOTE, "track_stress --compare --audit --fatigue --no-plot", links),
+    "links_80": (NOTE, "track_stress --compare --audit --fatigue --speed 80 --no-plot", links),
     "twenty": (PAGE, "track_stress --figure 4.11 --no-plot", twenty),
     "halved_ancf": (PAGE, "track_stress --body ancf --halve --no-plot", halve),
     "halved_rigid": (PAGE, "track_stress --body rigid --halve --until 4 --no-plot", halve),
     "bending_30": (PAGE, "track_stress --compare pair --elements 2 --no-plot", report),
     "bending_80": (PAGE, "track_stress --compare pair --elements 2 --speed 80 --no-plot", report),
-    "ensemble_30": (PAGE, "track_stress --compare ensemble --no-plot", with_rows(ensemble, ENSEMBLE)),
-    "ensemble_80": (PAGE, "track_stress --compare ensemble --speed 80 --no-plot", with_rows(ensemble, ENSEMBLE)),
+    "ensemble_30": (NOTE, "track_stress --compare ensemble --no-plot", with_rows(ensemble, ENSEMBLE)),
+    "ensemble_80": (NOTE, "track_stress --compare ensemble --speed 80 --no-plot", with_rows(ensemble, ENSEMBLE)),
 }
