@@ -23,9 +23,8 @@ for name, shows, command, pictures in stages:
     print(f"```sh\nexamples/run {name}   # builds it, and runs: {command}\n```\n")
     if pictures:
         print("\\htmlonly\n<div class=\"gallery\">")
-        for file, caption in pictures:
-            path = html.escape(file)
-            print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"\"/></a><figcaption>{html.escape(caption)}</figcaption></figure>")
+        for path, caption in (map(html.escape, picture) for picture in pictures):
+            print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"{caption}\"/></a><figcaption>{caption}</figcaption></figure>")
         print("</div>\n\\endhtmlonly\n")
 if not any(pictures for *_, pictures in stages):
     print("This site was built where no example had run yet: run `examples/run`, then `docs/site/build` again.")

@@ -50,11 +50,12 @@ left() {
 
 escaped() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' <<< "$1"; }
 
-# caption_of PICTURE: the title in the script of the same name, or the name of the picture.
+# caption_of PICTURE: the title in the script of the same name, or the words of the picture's name.
 caption_of() {
   local script=${1%.*}.gp title=
   [ ! -r "$script" ] || title=$(sed -n "s/^set title '\(.*\)' noenhanced\$/\1/p" "$script" | head -n 1 | sed "s/''/'/g")
-  echo "${title:-$(basename "${1%.*}" | tr _ ' ')}"
+  local name=$(basename "${1%.*}" | tr _ ' ')
+  echo "${title:-${name^}}"
 }
 
 # title_of FILM: the title of the film's page, unchanged.
@@ -63,7 +64,7 @@ title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$/
 # write_index OUT: writes OUT/index.html with all pictures and films below OUT. The page is written to a temporary file
 # and moved, so it is never incomplete.
 write_index() {
-  local out=$1 page=$1/index.html.part name picture path films
+  local out=$1 page=$1/index.html.part name picture path caption films
   mkdir -p "$out"
   {
     cat << 'HEAD'
@@ -77,7 +78,7 @@ write_index() {
   code { background: #f2f2f2; padding: .2em .4em; }
   .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(24em, 1fr)); gap: 1.5em; }
   figure { margin: 0; } img { width: 100%; border: 1px solid #ddd; } figcaption { font-size: 90%; }
-  figcaption small { color: #666; display: block; } .film a { font-weight: 600; } .film small { color: #666; }
+  .film a { font-weight: 600; }
 </style>
 <h1>polybody: examples</h1>
 HEAD
@@ -90,13 +91,14 @@ HEAD
       echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out" "${films:+build/examples/polybody_viewer.html}")")</code></p>"
       while IFS= read -r picture; do
         path=$(escaped "${picture#"$out"/}")
-        echo "<p class=\"film\"><a href=\"$path\">&#9654; $(title_of "$picture")</a> <small>$path</small></p>"
+        echo "<p class=\"film\"><a href=\"$path\">&#9654; $(title_of "$picture")</a></p>"
       done < <([ -z "$films" ] || echo "$films")
       echo '<div class="figures">'
       while IFS= read -r picture; do
         path=$(escaped "${picture#"$out"/}")
-        echo "<figure><a href=\"$path\"><img loading=\"lazy\" src=\"$path\" alt=\"\"></a>"
-        echo "<figcaption>$(escaped "$(caption_of "$picture")") <small>$path</small></figcaption></figure>"
+        caption=$(escaped "$(caption_of "$picture")")
+        echo "<figure><a href=\"$path\"><img loading=\"lazy\" src=\"$path\" alt=\"$caption\"></a>"
+        echo "<figcaption>$caption</figcaption></figure>"
       done < <(pictures_of "$out/$name")
       echo '</div>'
     done

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The planar beam of thesis Eqs. 2.7 to 2.10, without code of polybody: plain Python, no packages.
 
-  tests/long/planar_lrvf.py           prints the eight numbers that docs/validation.md quotes from this script
-  tests/long/planar_lrvf.py --check   also compares them with the rows of docs/validation.md
+  tests/long/planar_lrvf.py           prints the eight numbers that docs/validated quotes from this script
+  tests/long/planar_lrvf.py --check   also compares them with the rows of docs/validated
 
 Ten linear elements with one Gauss point, consistent mass, generalised-alpha method with rho_inf = 0.8 [Chung & Hulbert
 1993]. The first node is prescribed: at the origin, with a linear ramp of its angle to 1.5 rad (arm), or with the angle
@@ -134,7 +134,7 @@ def largest_gap(stiffness, ramp):
 
 
 def results():
-    """{(quantity, formulation): number}, with the names of docs/validation.md."""
+    """{(quantity, formulation): number}, with the names of docs/validated."""
     out = {("largest gap of the meshes [m]", f"Lrvf, {name} stiffness, {ramp:g} s"): largest_gap(name, ramp)
            for name, ramp in (("high", 10.0), ("low", 4.5), ("medium", 4.5), ("medium", 10.0))}
     *_, last = motion(STIFFNESS["low"], lambda t: 0.0, 30e3, 1e-3, 2.0)
@@ -147,14 +147,15 @@ def results():
 def main():
     found, wrong = results(), 0
     rows = {}
-    for line in (Path(__file__).resolve().parents[2] / "docs/validation.md").read_text().splitlines():
-        cells = [cell.strip() for cell in line.split("|")]
-        if len(cells) > 8 and "planar_lrvf.py" in cells[9 if len(cells) > 9 else 8]:
-            rows[cells[2], cells[3]] = cells[4]
+    for page in (Path(__file__).resolve().parents[2] / "docs/validated").glob("*.md"):
+        for line in page.read_text().splitlines():
+            if line.startswith("| ") and "planar_lrvf.py" in line:
+                _, what, formulation, reference = (cell.strip() for cell in line.strip("|").split(" | ")[:4])
+                rows[what, formulation] = reference
     for key, value in found.items():
         print(f"{key[0]}, {key[1]}: {value:.6g}")
         if "--check" in sys.argv and f"{value:.6g}" != rows.get(key):
-            print(f"  but docs/validation.md has {rows.get(key)}.")
+            print(f"  but docs/validated has {rows.get(key)}.")
             wrong += 1
     return 1 if wrong else 0
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file A number that a case compares. It is asserted like EXPECT_NEAR, and recorded for the tables of
-/// docs/validation.md.
+/// docs/validated.
 ///
 ///     Claim const tip{"S1", "x of the tip [m]", By::closed_form, "(L/θ) sin θ", "Lrvf, 10 elements"};
 ///     held(tip, x, 0.0, 1e-10, {.at = "full circle", .scale = 2.0});

@@ -79,7 +79,7 @@ TEST(FiniteElementLink, StretchesAsABar) {  // loaded in tension at its pins
   double const third = m113::pitch / 3.0;
   auto const moved = [&](double x) { return link->section(x).motion(x * Vec3::UnitX(), u).displacement(0, 0); };
   double const strain = (moved(third) - moved(-third)) / (2.0 * third);
-  held({"M113.md", "strain of a link of finite elements by a unit pull, times EA [N]", By::closed_form, "N = EA ε",
+  held({"M113 link", "strain of a link of finite elements by a unit pull, times EA [N]", By::closed_form, "N = EA ε",
         "Ffr, structure from CalculiX"},
        strain * constants(m113::link_bar()).EA, 1.0, 0.05);
 }

@@ -37,7 +37,7 @@ TEST(LinkGroundContact, StandsOnItsFourCorners) {
   auto const found = contact_points(flat, link, {});
   ASSERT_EQ(found.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    held({"M113.md §5", "depths of the four corners of a pad on flat ground [m]", By::closed_form,
+    held({"M113 contact", "depths of the four corners of a pad on flat ground [m]", By::closed_form,
           "thickness less height", "LinkGroundContact"},
          found[i].depth, 0.001, 1e-16, {equals("corner", double(i + 1))});
     EXPECT_EQ(found[i].normal, Vec3(0, 0, 1));
@@ -53,7 +53,7 @@ TEST(LinkGroundContact, StandsOnTheCornersThatAreLow) {
   auto const found = contact_points(flat, at({0, 0, low - 0.002}, {0, alpha, 0}), {});
   ASSERT_EQ(found.size(), 2u);
   for (auto const& p : found) {
-    held({"M113.md §5", "penetration of a pad that touches the ground with its front corners [m]", By::closed_form,
+    held({"M113 contact", "penetration of a pad that touches the ground with its front corners [m]", By::closed_form,
           "h cos α + l sin α less height", "LinkGroundContact"},
          p.depth, 0.002, 1e-16);
     EXPECT_GT(p.place[0], 0.0);
@@ -98,7 +98,7 @@ TEST(LinkGroundContact, PressesAcrossTheSlope) {
       // 2 per metre.
       EXPECT_NEAR(n.dot(Vec3(1, 0, hx)), 0.0, 5e-6);
       EXPECT_NEAR(n.dot(Vec3(0, 1, hy)), 0.0, 5e-6);
-      held_within({"M113.md §5", "depths of pads on bumps [m]", By::closed_form, "(h − z) n_z",
+      held_within({"M113 contact", "depths of pads on bumps [m]", By::closed_form, "(h − z) n_z",
                    "LinkGroundContact<BumpCourse>"},
                   std::abs(found[i].depth - (z - p[2]) * n[2]), 1e-15, {.scale = 0.03});
       EXPECT_LT((found[i].place - p).norm(), 1e-15);
@@ -199,7 +199,7 @@ TEST(LinkGroundContact, HangsThePadOfACableBelowIt) {
         EXPECT_EQ(p.normal, Vec3(0, 0, 1));
         deepest = std::max(deepest, p.depth);
       }
-      held_within({"M113.md §5", "depth of the pad of a cable [m]", By::closed_form,
+      held_within({"M113 contact", "depth of the pad of a cable [m]", By::closed_form,
                    "0.03 z_z + 0.055 abs x_z less height", "LinkGroundContact, cable"},
                   std::abs(deepest - d), 1e-14, {.scale = d});
     }

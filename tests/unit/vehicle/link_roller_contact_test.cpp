@@ -39,7 +39,7 @@ std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number) {
 TEST(LinkRollerContact, PressesOnAFlatLinkUnderItsMiddle) {
   auto const found = contact_points(one_rim, at({0, 0, 0}), at({0.02, 0.05, radius + thick - 0.001}));
   ASSERT_EQ(found.size(), 1u);
-  held({"M113.md §5", "depth of a rim in a link that lies flat [m]", By::closed_form, "R + h less the axle's height",
+  held({"M113 contact", "depth of a rim in a link that lies flat [m]", By::closed_form, "R + h less the axle's height",
         "LinkRollerContact"},
        found[0].depth, 0.001, 1e-15);
   EXPECT_LT((found[0].normal - Vec3(0, 0, -1)).norm(), 1e-15);
@@ -57,7 +57,7 @@ TEST(LinkRollerContact, FollowsALinkThatIsTilted) {
     auto const found = contact_points(
         one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a rotated roller gives the same contact
     ASSERT_EQ(found.size(), 1u);
-    Claim const tilted{"M113.md §5", "depth, normal and place of a rim on a link that is tilted", By::closed_form,
+    Claim const tilted{"M113 contact", "depth, normal and place of a rim on a link that is tilted", By::closed_form,
                        "those of the link's axes, carried along", "LinkRollerContact"};
     held_within(tilted, std::abs(found[0].depth - d), 1e-14, {"depth", d});
     held_within(tilted, (found[0].normal + link.A.col(2)).norm(), 1e-14, {"normal", 1.0});
@@ -72,7 +72,7 @@ TEST(LinkRollerContact, TouchesWithBothRims) {
   ASSERT_EQ(found.size(), 2u);
   for (std::size_t k : {0u, 1u}) {
     double const y = k == 0 ? -b : b;
-    held({"M113.md §5", "depths of the rims of a roller that leans [m]", By::closed_form, "d ∓ b sin α",
+    held({"M113 contact", "depths of the rims of a roller that leans [m]", By::closed_form, "d ∓ b sin α",
           "LinkRollerContact, two rims"},
          found[k].depth, d - y * std::sin(alpha), 1e-15, {equals("y", y)});
     EXPECT_LT((found[k].place - Vec3(0, y * std::cos(alpha), thick)).norm(), 1e-15);
@@ -127,9 +127,9 @@ TEST(LinkRollerContact, HandsOverToTheNextLinkWithoutABump) {
         shares += p.handover.share;
       }
     }
-    held({"M113.md §5", "shares of two links in a wheel between them", By::closed_form, "1", "LinkRollerContact"},
+    held({"M113 contact", "shares of two links in a wheel between them", By::closed_form, "1", "LinkRollerContact"},
          shares, 1.0, 1e-13, {equals("s", s)});
-    held_within({"M113.md §5", "force on a wheel between two links, of k R", By::closed_form, "k d across the links",
+    held_within({"M113 contact", "force on a wheel between two links, of k R", By::closed_form, "k d across the links",
                  "LinkRollerContact"},
                 (force - first.A.col(2) * (2e6 * d)).norm() / (2e6 * radius), 1e-12, {equals("s", s), 1.0});
     EXPECT_LT(moment.norm(), 1e-12 * 2e6 * radius * radius) << s;
@@ -178,9 +178,9 @@ TEST(LinkRollerContact, EdgeMeetsTheRimBeyondTheFace) {
     Vec3 const axle(side * (0.5 * pitch + e), 0.03, thick + height), edge(side * 0.5 * pitch, 0.03, thick);
     auto const found = contact_points(one_rim, link, at(axle));
     ASSERT_EQ(found.size(), 1u);
-    held(
-        {"M113.md §5", "depth of a link's edge in a rim [m]", By::closed_form, "along the radius", "LinkRollerContact"},
-        found[0].depth, 0.002, 1e-13, {equals("side", side)});
+    held({"M113 contact", "depth of a link's edge in a rim [m]", By::closed_form, "along the radius",
+          "LinkRollerContact"},
+         found[0].depth, 0.002, 1e-13, {equals("side", side)});
     EXPECT_LT((found[0].place - edge).norm(), 1e-15);
     EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
     // 20 mm deep in the extension of the rim, but just beyond the face: the depth is at most the distance from the
@@ -386,7 +386,7 @@ TEST(GuideHornContact, IsPushedBackAlongTheAxle) {
     auto const [link, roller] = guided(side * (play + 0.003), 0.04);
     auto const found = contact_points(horn, link, roller);
     ASSERT_EQ(found.size(), 1u);
-    held({"M113.md §5", "depth of a horn between rims [m]", By::closed_form, "what it is beyond its play",
+    held({"M113 contact", "depth of a horn between rims [m]", By::closed_form, "what it is beyond its play",
           "GuideHornContact"},
          found[0].depth, 0.003, 1e-14, {equals("side", side)});
     EXPECT_LT((found[0].normal - Vec3(0, -side, 0)).norm(), 1e-14);

@@ -123,10 +123,11 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
 // Sum of the masses of Wallin 2016, Table 3.1: 15 912.1 kg with the tensioners. The mass of the real vehicle is 11.36
 // t.
 TEST(M113, WeighsWhatTheReferenceSays) {
-  held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "M113.md §3, added up by hand",
+  held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "thesis Table 3.1, added up by hand",
         "m113/data.hpp"},
        m113::wallin_2016.total(), 15912.1, 0.05);
-  held({"M113 data", "mass of the real vehicle [kg]", By::published, "11.36 t, M113.md §10.1", "m113/data.hpp"},
+  held({"M113 data", "mass of the real vehicle [kg]", By::independent,
+        "masses of Project Chrono and thesis Table 3.1, added up by hand", "m113/data.hpp"},
        m113::production_vehicle.total(), 11.36e3, 5.0);
 }
 
@@ -165,7 +166,7 @@ TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
 TEST(M113, FollowsFromPitchAndTeeth) {
   TrackLayout const track = m113::track();
   auto const derived = [](char const* what, double value, double reference, double tolerance, char const* at = "") {
-    held({"M113 data", what, By::independent, "M113.md §2, §6, §8, worked out by hand", "m113/data.hpp"}, value,
+    held({"M113 data", what, By::independent, "pitch and number of teeth, computed by hand", "m113/data.hpp"}, value,
          reference, tolerance, {at});
   };
   derived("pitch radius of the sprocket [m]", track.pitch_radius(), 0.246588, 5e-7);
@@ -197,10 +198,10 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
       EXPECT_EQ(drive(0.9).value, 0.0);
       EXPECT_NEAR(drive(4.5).value, 0.5 * speed, 1e-13);
       EXPECT_EQ(drive(8.1).value, speed);
-      held(
-          {"M113 data", "distance of the drive in 10 s [m]", By::independent, "M113.md §8, worked out by hand", "Ramp"},
-          drive.integral(10.0) * m113::rolling_radius, distance, 0.05,
-          {equals("speed", speed) + equals(", rounding", rounding)});
+      held({"M113 data", "distance of the drive in 10 s [m]", By::independent,
+            "integral of the speed, computed by hand", "Ramp"},
+           drive.integral(10.0) * m113::rolling_radius, distance, 0.05,
+           {equals("speed", speed) + equals(", rounding", rounding)});
     }
   EXPECT_EQ(m113::drive(25.0).breakpoints(), (std::vector{1.0, 8.0}));
 }

@@ -58,8 +58,8 @@ Vec2 polar(double r, double angle) { return r * Vec2(std::cos(angle), std::sin(a
 
 TEST(SprocketProfile, SeatsPinsOnThePitchCircle) {
   auto const radius = [](char const* what, double value, double reference, double tolerance) {
-    held({"M113.md §5", what, By::independent, "M113.md §5.4, worked out by hand", "SprocketProfile"}, value, reference,
-         tolerance);
+    held({"M113 contact", what, By::independent, "geometry of the profile, computed by hand", "SprocketProfile"}, value,
+         reference, tolerance);
   };
   radius("pitch radius of the sprocket [m]", profile.pitch_radius(), 0.246588, 5e-7);
   radius("radius on which the valleys are centred [m]", profile.arc_centre(), 0.261588, 5e-7);
@@ -90,7 +90,7 @@ TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
   // inclined by 30 deg relative to the radius of the valley
   EXPECT_NEAR(std::atan2(up[1], up[0]), 30.0 * degree, 1e-4);
   double const half = pi / 10.0 - std::atan2(k[1], k[0]);
-  held({"M113.md §5", "thickness of a tooth's tip [m]", By::independent, "M113.md §5.4, worked out by hand",
+  held({"M113 contact", "thickness of a tooth's tip [m]", By::independent, "geometry of the profile, computed by hand",
         "SprocketProfile"},
        2.0 * profile.tip_radius * std::sin(half), 0.086, 5e-4);
   // A pin at the end of the flank touches the corner: on the flank's normal, at the distance r_p.
@@ -110,8 +110,8 @@ TEST(SprocketProfile, LetsGoOfAPinThatTurnsAboutItsNeighbour) {
     Vec2 const local = polar(pin.norm(), std::abs(from_valley));
     return -profile.overlap<double>(local[0], local[1]).depth;
   };
-  Claim const clear{"M113.md §5", "clearance of a pin that turns about its seated neighbour [m]", By::independent,
-                    "M113.md §5.4, worked out by hand", "SprocketProfile"};
+  Claim const clear{"M113 contact", "clearance of a pin that turns about its seated neighbour [m]", By::independent,
+                    "geometry of the profile, computed by hand", "SprocketProfile"};
   held(clear, clearance(5.0 * degree), 9.7e-3, 5e-5, {"5°"});
   held(clear, clearance(10.0 * degree), 10.7e-3, 5e-5, {"10°"});
   held(clear, clearance(20.0 * degree), 17.0e-3, 5e-5, {"20°"});
@@ -209,11 +209,11 @@ TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
     Vec2 const tension = both.inverse() * -n;  // tensions for N = 1
     double const k = std::tan(c.angle * degree) * std::tan(pi / 10.0);
     auto const ratio = [&](By by, char const* source, double reference, double tolerance) {
-      held({"M113.md §5", "tension behind a pin over that before it", by, source, "PinSprocketContact"},
+      held({"M113 contact", "tension behind a pin over that before it", by, source, "PinSprocketContact"},
            tension[0] / tension[1], reference, tolerance, {equals("φ", c.angle) + "°"});
     };
     ratio(By::closed_form, "(1 − K)/(1 + K), K = tan φ tan π/N", (1.0 - k) / (1.0 + k), 1e-8);
-    ratio(By::independent, "M113.md §5.4, worked out by hand", c.ratio, 5e-3);
+    ratio(By::independent, "geometry of the profile, computed by hand", c.ratio, 5e-3);
     EXPECT_GT(tension[0], 0.0);
   }
 }

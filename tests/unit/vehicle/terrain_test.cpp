@@ -156,9 +156,9 @@ TEST(Terrain, FlatGroundIsFlat) {
 TEST(Terrain, AWashboardRisesFirstAndIsHighAQuarterWaveOn) {
   Washboard const board{.amplitude = 0.03, .wavelength = 0.8};
   EXPECT_EQ(board.height(0.0, 5.0).z, 0.0);
-  held({"M113.md §5", "slope of a washboard where it begins", By::closed_form, "2π A/λ", "Washboard"},
+  held({"M113 contact", "slope of a washboard where it begins", By::closed_form, "2π A/λ", "Washboard"},
        board.height(0.0, 5.0).slope_x, 2.0 * pi * 0.03 / 0.8, 1e-15);
-  held({"M113.md §5", "height of a washboard a quarter wave on [m]", By::closed_form, "A", "Washboard"},
+  held({"M113 contact", "height of a washboard a quarter wave on [m]", By::closed_form, "A", "Washboard"},
        board.height(0.2, 5.0).z, 0.03, 1e-16);
   EXPECT_NEAR(board.height(-0.2 + 8.0, 5.0).z, -0.03, 1e-15);
   EXPECT_EQ(board.highest(), 0.03);
@@ -171,9 +171,9 @@ TEST(BumpCourse, ABumpIsARaisedCosine) {
   for (double const y : {-100.0, 0.0, 3.0}) {
     EXPECT_EQ(one.height(4.0, y).z, 0.1);
     EXPECT_EQ(one.height(4.0, y).slope_x, 0.0);
-    held({"M113.md §5", "height of a bump half way up [m]", By::closed_form, "½ H", "BumpCourse"}, one.height(3.5, y).z,
-         0.05, 1e-16, {equals("y", y)});
-    held({"M113.md §5", "slope of a bump half way up", By::closed_form, "π H/L", "BumpCourse"},
+    held({"M113 contact", "height of a bump half way up [m]", By::closed_form, "½ H", "BumpCourse"},
+         one.height(3.5, y).z, 0.05, 1e-16, {equals("y", y)});
+    held({"M113 contact", "slope of a bump half way up", By::closed_form, "π H/L", "BumpCourse"},
          one.height(3.5, y).slope_x, 0.05 * pi, 1e-15, {equals("y", y)});
     EXPECT_NEAR(one.height(4.5, y).slope_x, -0.05 * pi, 1e-15);
     EXPECT_NEAR(one.height(4.0 + 1.0 / 3.0, y).z, 0.075, 1e-16);
