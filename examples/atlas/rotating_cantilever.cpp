@@ -38,7 +38,8 @@ AnyCase arm(FormulationMesh const& mesh) {
 }
 
 void add(Formulations& to) {
-  std::vector<double> const steps{0.04, 0.02, 0.01, 0.005, 0.0025};
+  // Steps of 0.04 s excite vibrations of beams whose result depends on round-off. Floating frames stay smooth.
+  std::vector<double> const steps{0.02, 0.01, 0.005, 0.0025}, of_frames{0.04, 0.02, 0.01, 0.005, 0.0025};
   std::vector<Index> const cubic{2, 4, 8, 16, 32}, linear{5, 10, 20, 40, 80, 160};
   to.add<planar::Lrvf>("LRVF in the plane", "rigid sections", {linear, steps}, arm<planar::Lrvf>);
   to.add<planar::AncfCable<planar::GreenStrain>>("ANCF cable, Green strain", "cable, Green strain", {cubic, steps},
@@ -47,8 +48,8 @@ void add(Formulations& to) {
                                                        {cubic, steps},
                                                        arm<planar::AncfCable<planar::EngineeringStrain>>);
   char const* const small = "small deformation in a floating frame";
-  to.add<planar::Ffr>("FFR, nodal coordinates", small, {cubic, steps}, arm<planar::Ffr>);
-  to.add<planar::Ffr, MeshKind::modes>("FFR, modal coordinates", small, {{1, 2, 4, 8}, steps}, arm<planar::Ffr>);
+  to.add<planar::Ffr>("FFR, nodal coordinates", small, {cubic, of_frames}, arm<planar::Ffr>);
+  to.add<planar::Ffr, MeshKind::modes>("FFR, modal coordinates", small, {{1, 2, 4, 8}, of_frames}, arm<planar::Ffr>);
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{5, 10, 20, 40, 80}, steps}, arm<Lrvf<>>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, arm<AncfBeam<ElasticLine>>);
