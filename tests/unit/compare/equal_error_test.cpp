@@ -257,8 +257,9 @@ TEST(EqualError, RefusesAConstantOutput) {
   EqualErrorStudy study({.steps = {0.1, 0.05, 0.025}, .repeats = 1});
   study.add(Bending{.end_time = 1.0}, RigidBody{"rigid"}, {.model = "rigid"});
   EXPECT_TRUE(has(refusal([&] { study.run(); }), "\"tip x [m]\" is constant"));
-  EqualErrorReport zero{.output = "lag [m]"};
-  zero.formulations.push_back({.runs = {{.y = {0.0, 0.0}}}});
+  EqualErrorReport zero;
+  zero.output = "lag [m]";
+  zero.formulations.emplace_back().runs.emplace_back().y = {0.0, 0.0};
   EXPECT_TRUE(has(refusal([&] { detail::find_span(zero, [](auto const&) { return true; }); }), "\"lag [m]\" is const"));
 }
 
