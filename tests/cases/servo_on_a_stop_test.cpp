@@ -63,7 +63,7 @@ struct Time {
   double t, angle;
 };
 /// Angles of CASES3, by Radau IIA of scipy with rtol 1e-11, from θ̈ = (servo + stop − 7.3575 sin θ)/0.5.
-constexpr Time times[] = {{0.1, 0.08387673}, {0.3, 0.27768540}, {0.5, 0.46474471}, {1.9, 0.50164620},
+constexpr Time times[] = {{0.1, 0.08387673},  {0.3, 0.27768540}, {0.5, 0.46474471}, {1.9, 0.50164620},
                           {2.05, 0.46195710}, {2.1, 0.40825029}, {2.3, 0.19687401}, {2.5, -0.00704989}};
 
 template <class Policy, class Integrator>
@@ -74,14 +74,17 @@ void follows(char const* formulation, Integrator const& method, Policy const& po
   EnergyAudit audit(arm.model);
   audit.record(x);
   for (Time const& expected : times) {
-    for (State const& now : simulate(arm.model, x, method, {.end_time = expected.t, .step = 2e-4, .breakpoints = {2.0}}))
+    for (State const& now :
+         simulate(arm.model, x, method, {.end_time = expected.t, .step = 2e-4, .breakpoints = {2.0}}))
       audit.record(now);
-    held(angle, joint_angle(arm.model, x, arm.hinge), expected.angle, 1e-5, {.at = equals("t", expected.t), .scale = 0.5});
+    held(angle, joint_angle(arm.model, x, arm.hinge), expected.angle, 1e-5,
+         {.at = equals("t", expected.t), .scale = 0.5});
     if (expected.t == 1.9) {
       Claim const moment{"X14", "moment of the stop [N m]", By::closed_form, "20 − 7.3575 sin θ", formulation};
       held(moment, -applied_wrenches(arm.model, x, arm.stop)[1].m.dot(Vec3(0, -1, 0)), 16.462002, 1e-4);
     }
   }
+  std::printf("audit %g\n", audit.relative());
   EXPECT_LT(audit.relative(), 1e-3);
 }
 
