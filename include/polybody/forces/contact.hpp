@@ -2,6 +2,7 @@
 /// \file
 /// Contact between two markers: a geometry that computes the penetration, a normal force law and friction.
 
+#include <polybody/forces/contact_friction.hpp>
 #include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/forces/normal_force.hpp>
@@ -25,7 +26,19 @@ struct ContactPoint {
   Vec<T, 3> normal;               ///< (3) unit vector from b to a
   T depth;                        ///< penetration d > 0 [m]
   ContactBlend<T> handover = {};  ///< weight of the face; 1 if no other face is near
+  /// Number of the point's states, from 0 to `most_points` − 1. Points that exist at the same time have different
+  /// numbers, and a point keeps its number as the bodies move.
+  int slot = 0;
 };
+
+/// Number of contact points that a geometry can have at the same time: `G::most_points`, or 1 without this member.
+template <class G>
+constexpr int most_points() {
+  if constexpr (requires { G::most_points; })
+    return G::most_points;
+  else
+    return 1;
+}
 
 namespace detail {
 struct AnyPoint {
@@ -63,22 +76,10 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
-/// Regularised Coulomb friction −μ N v/√(v² + v_s²) at the slip velocity v. Bodies do not stick: under a tangential
-/// force F < μ N they creep with v = v_s F/√(μ²N² − F²).
-struct Friction {
-  double coefficient = 0.0;  ///< coefficient of friction μ [1]
-  double slip_speed = 0.0;   ///< v_s [m/s]; must be positive if μ is positive
-
-  void check(std::string const& name) const {
-    require_not_negative(coefficient, name, ": the coefficient of friction");
-    if (coefficient > 0.0) require_positive(slip_speed, name, ": the slip speed of the friction");
-  }
-};
-
 /// Contact force between two markers: N n + F_t on a at each contact point, with the normal force N, the normal n and
 /// the friction F_t. The opposite force acts on b. The velocity of either body is that of its material point at the
 /// contact point.
-template <ContactGeometry G, NormalForce N = SpringDamperContact>
+template <ContactGeometry G, NormalForce N = SpringDamperContact, ContactFriction F = Friction>
 struct Contact {
   using Geometry = G;  ///< type of the geometry
   static constexpr int markers = 2;
@@ -91,9 +92,9 @@ struct Contact {
       return G::needs;
   }();
 
-  G geometry;              ///< contact geometry
-  N normal;                ///< normal force law
-  Friction friction = {};  ///< regularised Coulomb friction
+  G geometry;       ///< contact geometry
+  N normal;         ///< normal force law
+  F friction = {};  ///< friction law
 
   void check(std::string const& name) const {
     geometry.check(name);
@@ -137,12 +138,10 @@ struct Contact {
   /// Force on a at a contact point [N], with the velocity v (3) of a relative to b [m/s] and the normal force n [N].
   template <StateScalar T>
   Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
-    using std::sqrt;
     Vec<T, 3> force(p.normal[0] * n, p.normal[1] * n, p.normal[2] * n);
     if (friction.coefficient > 0.0) {
       Vec<T, 3> const slip = detail::shifted<T>(v, p.normal, -v.dot(p.normal));
-      T const speed2 = slip.dot(slip) + friction.slip_speed * friction.slip_speed;
-      force = detail::shifted<T>(force, slip, -(n * friction.coefficient / sqrt(speed2)));
+      force = detail::shifted<T>(force, slip, -friction.template resistance<T>(slip.dot(slip), n));
     }
     return force;
   }
@@ -185,7 +184,7 @@ struct Contact {
       double along = 0.0;
       if (friction.coefficient > 0.0) {
         double const vn = v.dot(p.normal), speed2 = v.dot(v) - vn * vn;
-        along = cd * friction.coefficient * n / std::sqrt(speed2 + friction.slip_speed * friction.slip_speed);
+        along = friction.slope(speed2, n, cd);
       }
       add(p, across, along, f[0].r, of_a);
       add(p, across, along, f[1].r, of_b);
