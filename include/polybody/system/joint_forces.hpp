@@ -26,9 +26,10 @@ inline constexpr bool is_joint_handle = (std::is_same_v<H, ElementHandle<Js>> ||
 /// Refuses at compile time a joint whose geometry G has no coordinate of this kind.
 template <JointMotion::Kind kind, class G>
 constexpr void require_joint_coordinate() {
-  static_assert(kind != JointMotion::Kind::turn || HasJointAngle<G>,
-                "A force on an angle needs a joint that permits or prescribes exactly one rotation, such as Revolute or "
-                "Cylindrical. Apply it to two markers instead; their angle is about the third axis of the first one.");
+  static_assert(
+      kind != JointMotion::Kind::turn || HasJointAngle<G>,
+      "A force on an angle needs a joint that permits or prescribes exactly one rotation, such as Revolute or "
+      "Cylindrical. Apply it to two markers instead; their angle is about the third axis of the first one.");
   static_assert(kind != JointMotion::Kind::slide || HasJointTranslation<G>,
                 "A force on a translation needs a joint that permits or prescribes exactly one translation, such as "
                 "Prismatic or Cylindrical. Apply it to two markers instead; their translation is along the third axis "
@@ -96,9 +97,9 @@ inline void turn_marker(ModelParts& parts, Index published, int k) {
 template <JointForce F, class... Bs>
 ElementHandle<F> add_joint_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                                  std::tuple<BodyPool<Bs>...>& bodies, std::array<Index, 2> markers, int k) {
+  name = checked_force_name(parts, pool, force, std::move(name));
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[0], F::needs, name), ...);
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[1], needs_of_second<F>(), name), ...);
-  name = checked_force_name(parts, pool, force, std::move(name));
   parts.origin.change();
   if (k != 2)
     for (Index& marker : markers) {
