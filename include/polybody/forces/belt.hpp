@@ -26,9 +26,9 @@ struct BeltSpan {
 /// both ends.
 ///
 /// Creep: the belt adheres to a pulley where it arrives, with the strain of the incoming span; it slips on the last
-/// part of the arc [Firbank 1970]. Pulley j, which rotates at ω_j, passes the unstretched length s_j R_j ω_j/(1 + ε) per
-/// second from one span to the next, with the strain ε of the span that arrives [Bechtel et al. 2000]. State k is the
-/// change z_k of the unstretched length of span k. In the steady state of a driver 1 and a driven pulley 2,
+/// part of the arc [Firbank 1970]. Pulley j, which rotates at ω_j, passes the unstretched length s_j R_j ω_j/(1 + ε)
+/// per second from one span to the next, with the strain ε of the span that arrives [Bechtel et al. 2000]. State k is
+/// the change z_k of the unstretched length of span k. In the steady state of a driver 1 and a driven pulley 2,
 ///   R₁ω₁/(R₂ω₂) = (1 + ε_tight)/(1 + ε_slack).
 /// Changes of the unstretched length on the arcs by their strain are neglected. Friction is assumed
 /// sufficient for all loads, so that the belt never slips on the whole arc.

@@ -32,8 +32,9 @@ struct DcMotor {
     ScalarUnits::require_positive(inductance, "H", name, ": the inductance");
     ScalarUnits::require_positive(constant, "N m/A", name, ": the motor constant");
     if (!std::isfinite(gear_ratio) || gear_ratio == 0.0)
-      throw InvalidInput("motor.gear_ratio", {ErrorObject{name}, ": the gear ratio must be finite and not zero, but is ",
-                                              ErrorValue{gear_ratio}, "."});
+      throw InvalidInput(
+          "motor.gear_ratio",
+          {ErrorObject{name}, ": the gear ratio must be finite and not zero, but is ", ErrorValue{gear_ratio}, "."});
   }
   std::vector<double> breakpoints() const { return breakpoints_of(voltage); }  ///< breakpoints of the voltage [s]
 

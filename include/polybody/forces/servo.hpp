@@ -60,9 +60,9 @@ struct Servo {
   static_assert(detail::require_time_function<Target>());
   static constexpr bool is_load = true;
 
-  Target target;                       ///< r(t) [m] or [rad] with its rate
-  Required<double> proportional_gain;  ///< k_p [N/m] or [N m/rad]
-  Required<double> derivative_gain;    ///< k_d [N s/m] or [N m s/rad]; zero: P control
+  Target target;                                                ///< r(t) [m] or [rad] with its rate
+  Required<double> proportional_gain;                           ///< k_p [N/m] or [N m/rad]
+  Required<double> derivative_gain;                             ///< k_d [N s/m] or [N m s/rad]; zero: P control
   double most_force = std::numeric_limits<double>::infinity();  ///< bound of |Q| [N] or [N m]
   double most_speed = std::numeric_limits<double>::infinity();  ///< bound of the commanded speed [m/s] or [rad/s]
 
