@@ -32,11 +32,9 @@ struct Stop {
 template <class P, class I>
 void servo_on_a_stop(I const& integrator, double h, char const* formulation) {
   Hinge<P, OnAngle<Servo<Reversal>>, OnAngle<Stop>> arm(0.5, 1.5, 0.5);
-  arm.model.apply(OnAngle<Servo<Reversal>>{{.target = {},
-                                            .proportional_gain = 0.0,
-                                            .derivative_gain = 40.0,
-                                            .most_force = 20.0}},
-                  arm.pin, "servo");
+  arm.model.apply(
+      OnAngle<Servo<Reversal>>{{.target = {}, .proportional_gain = 0.0, .derivative_gain = 40.0, .most_force = 20.0}},
+      arm.pin, "servo");
   arm.model.apply(OnAngle<Stop>{}, arm.pin, "stop");
   State x = arm.model.reference_state();
   std::vector<std::pair<double, double>> const exact = {{0.1, 0.08387673}, {0.3, 0.27768540},  {0.5, 0.46474471},
@@ -101,7 +99,7 @@ void expect_step(L const& law, char const* what, double step, std::vector<Vec3> 
     if (next == times.size() || now.t < times[next] - 1e-9) continue;
     Instance const at{equals("t", times[next]), 1.0};
     auto const of = [&](char const* quantity) {
-      return Claim{"drives",         std::string(what) + ": " + quantity, By::independent, "Runge–Kutta of order 4, 10 µs",
+      return Claim{"drives", std::string(what) + ": " + quantity, By::independent, "Runge–Kutta of order 4, 10 µs",
                    "OnTurns, Radau IIA"};
     };
     held(of("angle [rad]"), arm.angle(now), exact[next][0], 1e-6, at);
@@ -135,17 +133,16 @@ TEST(Servos, AntiWindupKeepsThePidStepFromOvershooting) {
                {0.878030303, 0.166233492, -2.539609168}});
 }
 TEST(Servos, RateLimitedServoFollowsTheScript) {
-  expect_step(RateLimited<Servo<>>{.law = {.target = {1.0},
-                                           .proportional_gain = 40.0,
-                                           .derivative_gain = 6.0,
-                                           .most_force = 5.0},
-                                   .most_rate = 30.0,
-                                   .lag = 0.02},
-              "step of a servo with a bounded rate", 1e-4,
-              {{0.244856072, 2.154677903, 4.999719095},
-               {1.231645282, 3.674374780, -1.663912694},
-               {2.039342357, 0.057357392, -4.999999882},
-               {0.885863237, -3.867561212, 0.679037564}});
+  expect_step(
+      RateLimited<Servo<>>{
+          .law = {.target = {1.0}, .proportional_gain = 40.0, .derivative_gain = 6.0, .most_force = 5.0},
+          .most_rate = 30.0,
+          .lag = 0.02},
+      "step of a servo with a bounded rate", 1e-4,
+      {{0.244856072, 2.154677903, 4.999719095},
+       {1.231645282, 3.674374780, -1.663912694},
+       {2.039342357, 0.057357392, -4.999999882},
+       {0.885863237, -3.867561212, 0.679037564}});
 }
 
 // Target of 50 rad: J ω̇ = k_d (most_speed − ω) until the target is near. No bound is exceeded on the way.

@@ -165,6 +165,11 @@ struct BeltAndPulley {
     return all;
   }
 
+  /// Stretch 1 + ε of the belt that arrives on a pulley from `span`; 1 if the span is slack.
+  template <StateScalar T>
+  static T stretch(Span<T> const& span) {
+    return value_of(span.strain) > 0.0 ? span.strain + 1.0 : T(1.0);
+  }
   /// Unstretched length that pulley j passes on per second, u = s R (ω_j − ψ_j)/(1 + ε), where ψ_j is the mean angular
   /// velocity of the two spans on it. A change of the arc's angle takes belt from a span, or returns belt to it, with
   /// this span's own strain.
@@ -176,10 +181,10 @@ struct BeltAndPulley {
     for (std::size_t j = 0; j < N; ++j) {
       Span<T> const &arriving = all[before(j)], &leaving = all[j];
       T const surface = (f[j].w.dot(n) - (arriving.turning + leaving.turning) * 0.5) * signed_radius(j);
-      T const passed = surface / (1.0 + (value_of(surface) > 0.0 ? arriving.strain : leaving.strain));
+      T const passed = surface / stretch(value_of(surface) > 0.0 ? arriving : leaving);
       T const opening = (arriving.turning - leaving.turning) * (0.5 * signed_radius(j));
-      in[before(j)] += opening / (1.0 + arriving.strain) - passed;
-      in[j] += opening / (1.0 + leaving.strain) + passed;
+      in[before(j)] += opening / stretch(arriving) - passed;
+      in[j] += opening / stretch(leaving) + passed;
     }
     return in;
   }
