@@ -10,4 +10,5 @@
 #include <polybody/forces/scalar_force.hpp>
 #include <polybody/forces/servo.hpp>
 #include <polybody/forces/spring_laws.hpp>
+#include <polybody/run/belt_spans.hpp>
 #include <polybody/run/impact_at_limit.hpp>

@@ -8,6 +8,7 @@
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/standard_joints.hpp>
+#include <polybody/run/belt_spans.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -54,13 +55,7 @@ struct Transmission {
     x = model.reference_state();
   }
   double speed(std::size_t k) const { return joint_angle_rate(model, x, pins[k]); }
-  std::array<BeltSpan, N> spans() const {
-    std::array<Frame<double>, N> frames;
-    std::array<double, N> z;
-    for (std::size_t k = 0; k < N; ++k) frames[k] = frame(model, x, pulleys[k].at({0, 0, 0}));
-    std::copy_n(model.states(x, belt).begin(), N, z.begin());
-    return model.entry(belt).force.spans(frames, z);
-  }
+  std::array<BeltSpan, N> spans() const { return belt_spans(model, x, belt); }
 };
 
 BeltAndPulley<2> two_pulleys(std::array<int, 2> const& senses, double pretension = 400.0) {
@@ -106,21 +101,22 @@ TEST(Belt, CreepsByTheRatioOfItsStretches) {
   expect_creep({1, -1}, 20.0, "crossed belt, Radau IIA");
 }
 
-// The slack span does not push: its tension is zero, the tight span bears the load alone, and the belt leaves the slack
-// span without stretch.
+// The slack span does not push. The tension of the tight span is M/R, and the belt arrives from the slack span without
+// stretch.
 TEST(Belt, SlackSpanDoesNotPush) {
   Transmission<2> t(two_pulleys({1, 1}, 10.0), 20.0, -40.0);
   simulate(t.model, t.x, Radau{}, {.end_time = 2.5, .step = 5e-4}).run();
   std::array<BeltSpan, 2> const spans = t.spans();
   EXPECT_LT(spans[0].strain, -1e-4);
   EXPECT_EQ(spans[0].tension, 0.0);
-  held(closed_form("tension of a belt with a slack span [N]", "M/R", "open belt, Radau IIA"), spans[1].tension,
-       160.0, 1e-5);
+  held(closed_form("tension of a belt with a slack span [N]", "M/R", "open belt, Radau IIA"), spans[1].tension, 160.0,
+       1e-5);
   held(closed_form("ratio of the surface speeds with a slack span", "1 + M/(R EA)", "open belt, Radau IIA"),
        0.1 * t.speed(0) / (0.25 * t.speed(1)), 1.0 + 160.0 / 2e4, 1e-8);
 }
 
-// A free idler transmits no torque: both spans next to it have one tension, and its bearing bears their sum.
+// A free idler transmits no torque. Both spans next to it have equal tensions, and the force of its bearing is their
+// sum.
 TEST(Belt, IdlerTransmitsNoTorque) {
   BeltAndPulley<3> const belt{.radii = {0.1, 0.2, 0.05},
                               .centres = {Vec3(0, 0, 0), Vec3(0.8, 0, 0), Vec3(0.4, 0.5, 0)},
@@ -137,8 +133,7 @@ TEST(Belt, IdlerTransmitsNoTorque) {
        1e-5, {.scale = 400.0});
   held(claim("difference of the tensions at a driven pulley [N]", "M/R"), spans[1].tension - spans[0].tension, 100.0,
        1e-5);
-  held(claim("surface speed of a free idler, of the driver's", "1"), 0.05 * t.speed(2) / (0.1 * t.speed(0)), 1.0,
-       1e-8);
+  held(claim("surface speed of a free idler, of the driver's", "1"), 0.05 * t.speed(2) / (0.1 * t.speed(0)), 1.0, 1e-8);
   // direction of span k: unit vector of d − (R_{k+1} − R_k) n×t, by the angle of d less asin((R_{k+1} − R_k)/|d|)
   auto const along = [&](std::size_t k) -> Vec3 {
     Vec3 const d = belt.centres[(k + 1) % 3] - belt.centres[k];
@@ -150,8 +145,8 @@ TEST(Belt, IdlerTransmitsNoTorque) {
               (reaction(t.model, t.x, t.pins[2]).f + pull).norm(), 1e-5, {.scale = pull.norm()});
 }
 
-/// A pulley that is held, and one on the slide and the hinge of a carriage. The force on the carriage is 400 N, twice the
-/// pretension, and grows to `pull` within 1 s.
+/// A pulley that is held, and one on the slide and the hinge of a carriage. The force on the carriage is 400 N, twice
+/// the pretension, and grows to `pull` within 1 s.
 struct Tensioner {
   using Slide = Joint<Prismatic>;
   using Fixed = Joint<Weld>;
@@ -174,16 +169,17 @@ struct Tensioner {
                             .pretension = 200.0},
                        std::tuple(first.at({0, 0, 0}), second.at({0, 0, 0})), "belt");
     model.apply(PointForce<>{.force = {400.0, 0, 0}}, carriage.at({0, 0, 0}), "pretension");
-    model.apply(PointForce<SmoothRamp>{.force = {pull - 400.0, 0, 0}, .law = {.target = 1.0, .duration = 1.0}}, carriage.at({0, 0, 0}), "pull");
+    model.apply(PointForce<SmoothRamp>{.force = {pull - 400.0, 0, 0}, .law = {.target = 1.0, .duration = 1.0}},
+                carriage.at({0, 0, 0}), "pull");
   }
 };
-// Both spans bear half of the force F on the carriage, so its way is l₀ ((1 + F/2EA)/(1 + ε₀) − 1).
+// Both spans have the tension F/2 with the force F on the carriage. The displacement is l₀ ((1 + F/2EA)/(1 + ε₀) − 1).
 TEST(Belt, MovingCentreStretchesBothSpans) {
   Tensioner t(1000.0, 60.0);
   State x = t.model.reference_state();
   EnergyAudit audit(t.model);
   for (State const& now : simulate(t.model, x, Radau{}, {.end_time = 4.0, .step = 1e-3})) audit.record(now);
-  held(closed_form("way of a pulley that tensions a belt [m]", "F/2 in each span", "two pulleys, Radau IIA"),
+  held(closed_form("displacement of a pulley that tensions a belt [m]", "F/2 in each span", "two pulleys, Radau IIA"),
        position(t.model, x, t.carriage.at({0, 0, 0})).x() - 0.8, 0.8 * ((1.0 + 500.0 / 2e4) / 1.01 - 1.0), 1e-8);
   EXPECT_LT(audit.relative(), 1e-6) << audit;
 }

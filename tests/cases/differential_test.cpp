@@ -100,7 +100,8 @@ TEST(Differential, TurnsTheFreeShaftTwiceAsFastIfTheOtherOneIsBlocked) {
   EXPECT_NEAR(w[0], 4.0 / (0.2 + 4.0 * 0.5), 1e-7);  // α_c (J_c + 4 J_l) = M_c
 }
 
-// Many turns: the twist stays that of the torque, also from a state in which a shaft has turned by more than half a turn.
+// Many turns: the twist stays that of the torque, also from a state in which a shaft has turned by more than half a
+// turn.
 TEST(Differential, CountsFullTurns) {
   Axle axle({0.2, 0.5, 1e9}, {4.0, 0.0, 0.0});
   simulate(axle.model, axle.x, Radau{}, {.end_time = 10.0, .step = 0.01}).run();

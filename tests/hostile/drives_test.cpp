@@ -66,11 +66,8 @@ void run_shafts(F const& force, std::array<Vec3, F::markers> const& centres) {
 
 TEST(HostileParameters, OfDrives) {
   int tried = 0;
-  Servo<> const servo{.target = {0.5},
-                      .proportional_gain = 10.0,
-                      .derivative_gain = 2.0,
-                      .most_force = 3.0,
-                      .most_speed = 1.0};
+  Servo<> const servo{
+      .target = {0.5}, .proportional_gain = 10.0, .derivative_gain = 2.0, .most_force = 3.0, .most_speed = 1.0};
   tried += try_hostile(servo, "Servo", drive<Servo<>>);
   tried += try_hostile(RateLimited<Servo<>>{.law = servo, .most_rate = 20.0, .lag = 0.1}, "RateLimited",
                        drive<RateLimited<Servo<>>>);
@@ -95,10 +92,9 @@ TEST(HostileParameters, OfDrives) {
                                         .pretension = 50.0,
                                         .senses = {1, -1}},
                        "BeltAndPulley", [&](BeltAndPulley<2> const& belt) { run_shafts(belt, centres); });
-  tried += try_hostile(Differential{.stiffness = 100.0, .damping = 1.0}, "Differential",
-                       [](Differential const& gears) {
-                         run_shafts(gears, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
-                       });
+  tried += try_hostile(Differential{.stiffness = 100.0, .damping = 1.0}, "Differential", [](Differential const& gears) {
+    run_shafts(gears, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  });
   std::cout << tried << " parameters of drives\n";
 }
 
@@ -119,17 +115,15 @@ TEST(DriveParameters, AreNamedWithValueUnitAndRange) {
   EXPECT_EQ(refusal_of(Servo<>{.target = {}, .proportional_gain = 2.0, .derivative_gain = 0.0, .most_speed = 1.0}),
             "\"hostile\": the derivative gain must be positive if the largest speed is finite, but is 0 N m s/rad. It "
             "controls the speed.");
-  EXPECT_EQ(refusal_of(PidServo<>{.target = {},
-                                  .proportional_gain = 2.0,
-                                  .integral_gain = -1.0,
-                                  .derivative_gain = 0.0,
-                                  .tracking_time = 1.0}),
-            "\"hostile\": the integral gain must be zero or positive, and finite, but is -1 N m/rad/s.");
+  EXPECT_EQ(
+      refusal_of(PidServo<>{
+          .target = {}, .proportional_gain = 2.0, .integral_gain = -1.0, .derivative_gain = 0.0, .tracking_time = 1.0}),
+      "\"hostile\": the integral gain must be zero or positive, and finite, but is -1 N m/rad/s.");
   EXPECT_EQ(refusal_of(DcMotor<>{.voltage = {}, .resistance = 1.0, .inductance = 0.0, .constant = 1.0}),
             "\"hostile\": the inductance must be positive and finite, but is 0 H.");
-  EXPECT_EQ(refusal_of(
-                DcMotor<>{.voltage = {}, .resistance = 1.0, .inductance = 1.0, .constant = 1.0, .gear_ratio = 0.0}),
-            "\"hostile\": the gear ratio must be finite and not zero, but is 0.");
+  EXPECT_EQ(
+      refusal_of(DcMotor<>{.voltage = {}, .resistance = 1.0, .inductance = 1.0, .constant = 1.0, .gear_ratio = 0.0}),
+      "\"hostile\": the gear ratio must be finite and not zero, but is 0.");
 }
 TEST(DriveParameters, OfBeltsAreNamedWithThePulley) {
   std::array const centres = {Vec3(0, 0, 0), Vec3(0.25, 0, 0)};

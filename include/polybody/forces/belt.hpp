@@ -42,9 +42,9 @@ struct BeltAndPulley {
   using Numbers = std::array<double, N>;
 
   Numbers radii = {};                         ///< (N) radii R of the pulleys [m]; each must be given
-  std::array<Vec3, N> centres = origins();    ///< (N) centres in the reference configuration, world axes [m]
+  std::array<Vec3, N> centres = origins();    ///< (N) centres, the markers, in the reference configuration, world axes [m]
   Required<double> axial_stiffness;           ///< EA [N]: tension per strain
-  double damping = 0.0;                       ///< D [N s]: tension per strain rate; fades out below the pretension
+  double damping = 0.0;                       ///< c [N s]: tension per strain rate; fades out below the pretension
   Required<double> pretension;                ///< tension of all spans in the reference configuration [N]
   std::array<int, N> senses = all_senses(1);  ///< (N) s: +1 for a pulley that turns about +n while the belt runs from
                                               ///< pulley 0 to pulley 1, otherwise −1; a crossed belt has +1 and −1
@@ -80,7 +80,8 @@ struct BeltAndPulley {
     }
     return w;
   }
-  /// Rates ż of the unstretched lengths [m/s]: inflow from pulley k less outflow to pulley k + 1.
+  /// Rates ż of the unstretched lengths [m/s]: inflow from pulley k less outflow to pulley k + 1. `f` are the frames of
+  /// the pulleys, z the states.
   template <StateScalar T>
   std::array<T, N> rates(std::array<Frame<T>, N> const& f, std::array<T, N> const& z, double) const {
     return inflow(f, geometry_at(f, z));
@@ -189,8 +190,8 @@ struct BeltAndPulley {
     return in;
   }
 
-  /// Spans with tension N = EA ε + D ε˙ for ε > 0, never negative. With the strain ε₀ of the pretension, the factor
-  /// min(1, ε/ε₀) of D ε˙ keeps the tension continuous at ε = 0.
+  /// Spans with tension N = EA ε + c ε˙ for ε > 0, never negative. With the strain ε₀ of the pretension, the factor
+  /// min(1, ε/ε₀) of c ε˙ keeps the tension continuous at ε = 0.
   template <StateScalar T>
   std::array<Span<T>, N> spans_at(std::array<Frame<T>, N> const& f, std::array<T, N> const& z) const {
     std::array<Span<T>, N> all = geometry_at(f, z);

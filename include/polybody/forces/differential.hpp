@@ -38,12 +38,12 @@ struct Differential {
     }
     return w;
   }
-  /// Rate of the state [rad/s].
+  /// Rate of the state [rad/s]; `f` are the frames of carrier and shafts.
   template <StateScalar T>
   std::array<T, 1> rates(std::array<Frame<T>, 3> const& f, std::array<T, 1> const&, double) const {
     return {rate(f) * 2.0};
   }
-  /// Energy of the gears, ½ k φ² [J].
+  /// Energy of the gears, ½ k φ² [J]; `f` are the frames of carrier and shafts, z is the state.
   double potential(std::array<Frame<double>, 3> const& f, std::array<double, 1> const& z, double) const {
     double const x = twist(f, z);
     return 0.5 * stiffness * x * x;

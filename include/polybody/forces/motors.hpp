@@ -43,7 +43,7 @@ struct DcMotor {
   T force(T const&, T const&, std::array<T, 1> const& z, double) const {
     return z[0] * (gear_ratio * constant);
   }
-  /// Rate of the current [A/s].
+  /// Rate of the current z [A/s] at the speed `rate` of the joint.
   template <StateScalar T>
   std::array<T, 1> rates(T const&, T const& rate, std::array<T, 1> const& z, double t) const {
     double const u = Motion(voltage(t)).value;

@@ -106,7 +106,7 @@ struct PidServo {
   T force(T const& x, T const& rate, std::array<T, 1> const& z, double t) const {
     return detail::limited<T>(detail::servo_command<PidServo, T>(*this, x, rate, target(t)) + z[0], most_force);
   }
-  /// Rate of the integral part [N/s] or [N m/s].
+  /// Rate of the integral part z [N/s] or [N m/s] at x [m] or [rad] with the rate `rate`.
   template <StateScalar T>
   std::array<T, 1> rates(T const& x, T const& rate, std::array<T, 1> const& z, double t) const {
     Motion const r = target(t);
@@ -149,12 +149,12 @@ struct RateLimited {
     }
     return z;
   }
-  /// Force q [N] or [N m].
+  /// Force q [N] or [N m], the last state of z.
   template <StateScalar T>
   T force(T const&, T const&, std::array<T, std::size_t(states)> const& z, double) const {
     return z.back();
   }
-  /// Rates of the states of the law, then q̇.
+  /// Rates of the states z at x [m] or [rad] with the rate `rate`: those of the law, then q̇ [N/s] or [N m/s].
   template <StateScalar T>
   std::array<T, std::size_t(states)> rates(T const& x, T const& rate, std::array<T, std::size_t(states)> const& z,
                                            double t) const {

@@ -131,5 +131,41 @@ TEST(Drives, ActOnBothBodiesOppositely) {
   expect_balance<CurveOnAngle>();
 }
 
+/// Length of the belt on the three pulleys [m], less a constant, from the directions of the spans: the angle of d less
+/// asin(D/|d|).
+double length_on_pulleys(BeltAndPulley<3> const& belt, std::array<Vec3, 3> const& centres) {
+  std::array<double, 3> direction;
+  auto const signed_radius = [&](std::size_t k) { return belt.senses[k] * belt.radii[k]; };
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::size_t const next = (k + 1) % 3;
+    Vec3 const d = centres[next] - centres[k];
+    direction[k] = std::atan2(d.y(), d.x()) - std::asin((signed_radius(next) - signed_radius(k)) / d.norm());
+  }
+  double length = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) length += signed_radius(k) * (direction[k] - direction[(k + 2) % 3]);
+  return length;
+}
+// With equal strains ε of all spans, the belt that moving centres return from the pulleys is added to the spans,
+// Σ z˙ = −(length on the pulleys)˙/(1 + ε). The rotation of the pulleys adds nothing.
+TEST(Belt, MovingCentresReturnTheLengthOnThePulleys) {
+  BeltAndPulley<3> const belt = BeltWithIdler::force();
+  Numbers number;
+  std::array<Frame<double>, 3> frames;
+  for (std::size_t k = 0; k < 3; ++k) {
+    frames[k].r = belt.centres[k];
+    frames[k].v = Vec3(number(), number(), 0.0);
+    frames[k].w = Vec3(0.0, 0.0, number());
+  }
+  double const rate = slope_at_zero([&](double h) {
+    std::array<Vec3, 3> centres;
+    for (std::size_t k = 0; k < 3; ++k) centres[k] = belt.centres[k] + frames[k].v * h;
+    return length_on_pulleys(belt, centres);
+  });
+  auto const z = belt.rates<double>(frames, {0.0, 0.0, 0.0}, 0.0);
+  double const strain = belt.pretension / belt.axial_stiffness;
+  EXPECT_GT(std::abs(rate), 0.01);
+  EXPECT_NEAR(z[0] + z[1] + z[2], -rate / (1.0 + strain), 1e-9);
+}
+
 }  // namespace drives_laws_test
 }  // namespace polybody
