@@ -76,6 +76,54 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
+namespace detail {
+/// Calls visit(point, v, N) for every contact point, with the velocity v of a relative to b at the point and the normal
+/// force N.
+template <StateScalar T, class G, class N, class Visit>
+void for_each_pressed_point(G const& geometry, N const& normal, std::array<Frame<T>, 2> const& f, Visit&& visit) {
+  auto const at_point = [&](ContactPoint<T> const& p) {
+    Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
+    Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
+    Vec<T, 3> v;
+    for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
+    visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
+  };
+  geometry.template for_each_point<T>(f[0], f[1], PointVisitor<T>(at_point));
+}
+/// Adds the wrenches of `force` (3) on a at `place` (3) and of the opposite force on b to w.
+template <StateScalar T>
+void act(Vec<T, 3> const& force, Vec<T, 3> const& place, std::array<Frame<T>, 2> const& f,
+         std::array<Wrench<T>, 2>& w) {
+  Vec<T, 3> const arm_a = place - f[0].r, arm_b = place - f[1].r;
+  Vec<T, 3> const of_a = arm_a.cross(force), of_b = arm_b.cross(force);
+  for (int i = 0; i < 3; ++i) {
+    w[0].f[i] += force[i];
+    w[1].f[i] -= force[i];
+    w[0].m[i] += of_a[i];
+    w[1].m[i] -= of_b[i];
+  }
+}
+/// Adds the wrenches of the force −U ∂share/∂place at a contact point whose weight varies with the position.
+template <StateScalar T, class N>
+void act_at_handover(N const& normal, ContactPoint<T> const& p, std::array<Frame<T>, 2> const& f,
+                     std::array<Wrench<T>, 2>& w) {
+  if (!(value_of(p.handover.share) < 1.0)) return;
+  Vec<T, 3> const& s = p.handover.slope;
+  T const stored = -normal.template potential<T>(p.depth);
+  act<T>({s[0] * stored, s[1] * stored, s[2] * stored}, p.handover.place, f, w);
+}
+/// Potential energy of the normal forces at all contact points [J].
+template <class G, class N>
+double potential_of_points(G const& geometry, N const& normal, std::array<Frame<double>, 2> const& f) {
+  double sum = 0.0;
+  auto const at_point = [&](ContactPoint<double> const& p) {
+    sum += normal.template potential<double>(p.depth) * p.handover.share;
+  };
+  geometry.template for_each_point<double>(f[0], f[1], PointVisitor<double>(at_point));
+  return sum;
+}
+}  // namespace detail
+
 /// Contact force between two markers: N n + F_t on a at each contact point, with the normal force N, the normal n and
 /// the friction F_t. The opposite force acts on b. The velocity of either body is that of its material point at the
 /// contact point.
@@ -125,14 +173,7 @@ struct Contact {
   /// normal force N.
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
-    auto const at_point = [&](ContactPoint<T> const& p) {
-      Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
-      Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
-      Vec<T, 3> v;
-      for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
-      visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
-    };
-    geometry.template for_each_point<T>(f[0], f[1], detail::PointVisitor<T>(at_point));
+    detail::for_each_pressed_point<T>(geometry, normal, f, visit);
   }
 
   /// Force on a at a contact point [N], with the velocity v (3) of a relative to b [m/s] and the normal force n [N].
@@ -149,23 +190,9 @@ struct Contact {
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
     std::array<Wrench<T>, 2> w;
-    auto const act = [&](Vec<T, 3> const& force, Vec<T, 3> const& place) {
-      Vec<T, 3> const arm_a = place - f[0].r, arm_b = place - f[1].r;
-      Vec<T, 3> const of_a = arm_a.cross(force), of_b = arm_b.cross(force);
-      for (int i = 0; i < 3; ++i) {
-        w[0].f[i] += force[i];
-        w[1].f[i] -= force[i];
-        w[0].m[i] += of_a[i];
-        w[1].m[i] -= of_b[i];
-      }
-    };
     for_each_point(f, [&](ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) {
-      if (value_of(n) > 0.0) act(force_at(p, v, n), p.place);
-      if (value_of(p.handover.share) < 1.0) {
-        Vec<T, 3> const& s = p.handover.slope;
-        T const stored = -normal.template potential<T>(p.depth);
-        act({s[0] * stored, s[1] * stored, s[2] * stored}, p.handover.place);
-      }
+      if (value_of(n) > 0.0) detail::act<T>(force_at(p, v, n), p.place, f, w);
+      detail::act_at_handover<T>(normal, p, f, w);
     });
     return w;
   }
@@ -192,12 +219,7 @@ struct Contact {
   }
 
   double potential(std::array<Frame<double>, 2> const& f, double) const {
-    double sum = 0.0;
-    auto const at_point = [&](ContactPoint<double> const& p) {
-      sum += normal.template potential<double>(p.depth) * p.handover.share;
-    };
-    geometry.template for_each_point<double>(f[0], f[1], detail::PointVisitor<double>(at_point));
-    return sum;
+    return detail::potential_of_points(geometry, normal, f);
   }
 
  private:

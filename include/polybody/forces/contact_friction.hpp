@@ -6,7 +6,7 @@
 #include <concepts>
 #include <string>
 
-#include <polybody/math/errors.hpp>
+#include <polybody/math/types.hpp>
 
 namespace polybody {
 
@@ -33,13 +33,18 @@ struct Friction {
   }
 };
 
-/// Friction law of a contact: the ratio of friction force and slip velocity at a contact point.
+/// Friction law of a contact without states: the ratio of friction force and slip velocity at a contact point.
 template <class F>
-concept ContactFriction = requires(F const law, std::string const name, double x) {
+concept SlipFriction = requires(F const law, double x) {
   { law.coefficient } -> std::convertible_to<double>;
   { law.template resistance<double>(x, x) } -> std::same_as<double>;
   { law.slope(x, x, x) } -> std::same_as<double>;
-  law.check(name);
 };
+
+struct BristleFriction;
+
+/// Friction law of a contact: a `SlipFriction`, or `BristleFriction`.
+template <class F>
+concept ContactFriction = std::same_as<F, BristleFriction> || SlipFriction<F>;
 
 }  // namespace polybody

@@ -137,9 +137,19 @@ struct Gushing {
   static Gusher force() { return Gusher::with_energy(); }
 };
 
+struct HalfLost : MaxwellElement {
+  double dissipation(std::array<Frame<double>, 2> const& f, std::array<double, 1> const& z, double t) const {
+    return 0.5 * MaxwellElement::dissipation(f, z, t);
+  }
+};
+struct Losing {
+  static HalfLost force() { return {{.stiffness = 80.0, .damping = 3.0, .free_length = 0.7}}; }
+};
+
 TEST(ForceLaws, TellWhatIsWrong) {
   EXPECT_EQ(broken<ForceLaws<Spring>>(), Names{});
   EXPECT_EQ(broken<ForceLaws<Gushing>>(), Names{"GivesBackNoMoreThanItsPotential"});
+  EXPECT_EQ(broken<ForceLaws<Losing>>(), Names{"DissipationIsTheLostPower"});
   Names const one_sided = broken<ForceLaws<OneSided>>();
   ASSERT_FALSE(one_sided.empty());
   EXPECT_EQ(one_sided.front(), "ActionIsReaction");
