@@ -138,7 +138,8 @@ struct BoxOnBox {
         .half = 0.0, .radius = rounding_a, .rounding = rounding_b, .taper = taper, .share = 0.25};
     detail::SegmentOnBox const b_on_a{
         .half = 0.0, .radius = rounding_b, .rounding = rounding_a, .taper = taper, .share = 0.25};
-    edges<T>(a, core_a, b, core_b, a_on_b, [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, b.A, 1.0)); });
+    edges<T>(a, core_a, b, core_b, a_on_b,
+             [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, b.A, 1.0)); });
     edges<T>(b, core_b, a, core_a, b_on_a, [&](ContactPoint<T> p) {
       p.slot += 24;
       visit(detail::in_world<T>(p, a.r, a.A, -1.0));
@@ -168,8 +169,8 @@ struct BoxOnBox {
                                detail::in_axes<T>(b.A, detail::axis_of<T>(a.A, 2))};
     for (int edge = 0; edge < 12; ++edge) {
       int const i = edge / 4, j = (i + 1) % 3, k = (i + 2) % 3;
-      Vec<T, 3> const at = detail::shifted<T>(
-          detail::shifted<T>(middle, axes[j], T((edge & 1) ? h_a[j] : -h_a[j])), axes[k], T((edge & 2) ? h_a[k] : -h_a[k]));
+      Vec<T, 3> const at = detail::shifted<T>(detail::shifted<T>(middle, axes[j], T((edge & 1) ? h_a[j] : -h_a[j])),
+                                              axes[k], T((edge & 2) ? h_a[k] : -h_a[k]));
       shape.half = h_a[i];
       detail::touch_box<T>(h_b, at, axes[i], shape, [&](ContactPoint<T> p) {
         p.slot += 2 * edge;

@@ -131,7 +131,7 @@ double nearest_on_segment(Vec3 const& h, Vec3 const& m, Vec3 const& u, double ha
 /// Point k has the depth
 ///   d_k = ρ_a + ρ_b − min over s of f_k(s),   f_k(s) = distance(m + s u) + ½ κ (s − s_k)²,   s_k = ∓ℓ.
 /// f_k is strictly convex. Its minimum, at s*, is therefore unique and a continuous function of the pose, also if the
-/// segment is parallel to a face or an edge. With κ = 0 the point would jump from one end to the other there. By the
+/// segment is parallel to a face or an edge. With κ = 0, point k would jump from end to end in this position. By the
 /// envelope theorem the terms with δs* cancel, so that δd_k = −n·δ(m + s u) at fixed s = s*. The force N(d_k) n at
 /// this point is thus the exact derivative of the potential U(d_k). The loss ½ κ (s − s_k)² is at most τ.
 template <StateScalar T, class Visit>

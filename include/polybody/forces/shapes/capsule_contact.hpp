@@ -91,7 +91,7 @@ struct CapsuleOnCapsule {
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
     Vec3 const line = a.r - b.r, x = detail::axis_of<double>(b.A, 0);
     double const across = 0.5 * length_a + radius_a + radius_b, along = line.dot(x), reach = across + 0.5 * length_b;
-    return line.dot(line) - along * along < across * across && std::abs(along) < reach;
+    return line.dot(line) - along * along < across * across && line.dot(line) < reach * reach;
   }
   template <class = void>  // compiled where it is used
   ContactReach reach(Frame<double> const& b) const {
@@ -101,10 +101,10 @@ struct CapsuleOnCapsule {
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     Mat<T, 3, 3> const axes = detail::axes_about<T>(detail::axis_of<T>(b.A, 0));
     Vec<T, 3> const arm = a.r - b.r;
-    detail::touch_box<T>({0.5 * length_b, 0.0, 0.0}, detail::in_axes<T>(axes, arm),
-                         detail::in_axes<T>(axes, detail::axis_of<T>(a.A, 0)),
-                         {.half = 0.5 * length_a, .radius = radius_a, .rounding = radius_b, .taper = taper, .share = 0.5},
-                         [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, axes, 1.0)); });
+    detail::touch_box<T>(
+        {0.5 * length_b, 0.0, 0.0}, detail::in_axes<T>(axes, arm), detail::in_axes<T>(axes, detail::axis_of<T>(a.A, 0)),
+        {.half = 0.5 * length_a, .radius = radius_a, .rounding = radius_b, .taper = taper, .share = 0.5},
+        [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, axes, 1.0)); });
   }
 };
 

@@ -104,10 +104,10 @@ struct PolyhedronOnPlane {
 
   void check(std::string const& name) const {
     if (corners.empty() || corners.size() > std::size_t(most))
-      throw InvalidInput("contact.corners",
-                         {ErrorObject{name}, ": the number of corners of the polyhedron must lie in [1, ", most,
-                          "], but is ", ErrorValue{int(corners.size())},
-                          ". Set `corners`, or the template argument of PolyhedronOnPlane."});
+      throw InvalidInput(
+          "contact.corners",
+          {ErrorObject{name}, ": the number of corners of the polyhedron must lie in [1, ", most, "], but is ",
+           ErrorValue{int(corners.size())}, ". Set `corners`, or the template argument of PolyhedronOnPlane."});
     for (Vec3 const& p : corners) require_finite(p, name, ": a corner of the polyhedron");
     require_not_negative(rounding, name, ": the rounding of the polyhedron");
   }
