@@ -2,25 +2,27 @@
 /// \file
 /// Contact geometry of a body that consists of several shapes.
 
-#include <algorithm>
 #include <tuple>
 
 #include <polybody/forces/contact.hpp>
 
 namespace polybody {
 
-/// Contact geometry whose shape on body a is placed relative to marker a.
+/// Contact geometry whose shapes have their own positions and axes on the two bodies.
 template <ContactGeometry G>
 struct Placed {
-  G geometry;            ///< geometry of the contact
-  Placement place = {};  ///< position and axes of the shape, in the axes of marker a
+  G geometry;              ///< geometry of the contact
+  Placement place = {};    ///< position and axes of the shape of a, in the axes of marker a
+  Placement partner = {};  ///< position and axes of the shape of b, in the axes of marker b
 };
 template <class G>
 Placed(G) -> Placed<G>;
 template <class G>
 Placed(G, Placement) -> Placed<G>;
+template <class G>
+Placed(G, Placement, Placement) -> Placed<G>;
 
-/// Several shapes of body a against the same shape of body b, for example two boxes and a capsule on a plane:
+/// Several shapes of body a against shapes of body b, for example two boxes and a capsule on a plane:
 ///   Compound const sledge(Placed{runner, Placement::at({0, 0.3, 0})}, Placed{runner, Placement::at({0, -0.3, 0})},
 ///                         Placed{bar, Placement::at({0.2, 0, 0.1})});
 ///   using Floor = Contact<Compound<BoxOnPlane, BoxOnPlane, CapsuleOnPlane>>;
@@ -29,12 +31,6 @@ template <ContactGeometry... Gs>
 class Compound {
  public:
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr MarkerKind needs_of_second = std::max({[] {
-    if constexpr (requires { Gs::needs_of_second; })
-      return Gs::needs_of_second;
-    else
-      return Gs::needs;
-  }()...});
   static constexpr int most_points = (polybody::most_points<Gs>() + ... + 0);
 
   explicit Compound(Placed<Gs>... shapes) : shapes_(std::move(shapes)...) {}  ///< geometry of these shapes
@@ -43,12 +39,13 @@ class Compound {
     each([&](auto const& shape) {
       shape.geometry.check(name);
       shape.place.check(name);
+      shape.partner.check(name);
     });
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
     bool may = false;
-    each([&](auto const& shape) { may = may || shape.geometry.may_touch(frame_of<double>(a, shape.place), b); });
+    each([&](auto const& shape) { may = may || shape.geometry.may_touch(frame_of<double>(a, shape.place), frame_of<double>(b, shape.partner)); });
     return may;
   }
   template <StateScalar T, class Visit>
@@ -59,7 +56,7 @@ class Compound {
         point.slot += first;
         visit(point);
       };
-      shape.geometry.template for_each_point<T>(frame_of<T>(a, shape.place), b, renumbered);
+      shape.geometry.template for_each_point<T>(frame_of<T>(a, shape.place), frame_of<T>(b, shape.partner), renumbered);
       first += polybody::most_points<G>();
     });
   }
