@@ -181,14 +181,14 @@ TEST(BoxOnPlaneCase, RocksAboutAnEdgeLikeARigidBlock) {
     before = angle;
     t = now.t;
   }
-  held({"closed forms", "time of a rocking block from α/2 to α/20 [s]", By::independent, "quadrature of the energy integral",
-        "BoxOnPlane, k = 1e7 N/m"},
+  held({"closed forms", "time of a rocking block from α/2 to α/20 [s]", By::independent,
+        "quadrature of the energy integral", "BoxOnPlane, k = 1e7 N/m"},
        met, 0.21080178, 2e-3 * met);
 }
 
 // --- energy -------------------------------------------------------------------------------------------------------
 
-/// Tumbles over the floor: corners, edges and faces touch in turn.
+/// Tumbles over the floor: corners, edges and faces touch one after the other.
 OnFloor<Round> tumbling(double damping, double friction) {
   Vec3 const size(0.08, 0.12, 0.16);
   return {{.geometry = {.size = size, .rounding = 0.004},
@@ -226,7 +226,7 @@ TEST(BoxOnPlaneCase, EnergyAuditCloses) {
 
 // --- several shapes -----------------------------------------------------------------------------------------------
 
-// A sledge of two boxes and a capsule, as one compound and as three contacts.
+// A sledge of two boxes and a capsule, given by one compound or by three contacts.
 TEST(BoxOnPlaneCase, CompoundIsTheSumOfItsShapes) {
   BoxOnPlane const runner{.size = {0.4, 0.05, 0.05}};
   CapsuleOnPlane const bar{.radius = 0.03, .length = 0.3};
@@ -235,7 +235,8 @@ TEST(BoxOnPlaneCase, CompoundIsTheSumOfItsShapes) {
   SpringDamperContact const normal{.stiffness = 1e4, .damping = 50.0};
   Friction const friction{.coefficient = 0.3, .slip_speed = 0.01};
   using Sledge = Compound<BoxOnPlane, BoxOnPlane, CapsuleOnPlane>;
-  Contact<Sledge> const whole{Sledge(Placed{runner, left}, Placed{runner, right}, Placed{bar, front}), normal, friction};
+  Contact<Sledge> const whole{Sledge(Placed{runner, left}, Placed{runner, right}, Placed{bar, front}), normal,
+                              friction};
   Mat3 const inertia = inertia_of_box(2.0, {0.5, 0.3, 0.1});
   Placement const at = Placement::at({0, 0, 0.1}, {0.1, 0.3, 0});
   OnFloor<Contact<Sledge>> const one(whole, inertia, at, 2.0);

@@ -68,14 +68,13 @@ TEST(ContactShapes, BoxFallsOnABoxAndSettles) {
   double const taper = 2e-5;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Stack, Floor>> model{Gravity{0, 0, -g}};
   auto const lower = model.add(Rigid<>(2.0, inertia_of_box(2.0, large), Placement::at({0, 0, 0.0501})), "lower box");
-  auto const upper =
-      model.add(Rigid<>(mass, inertia_of_box(mass, small), Placement::at({0.05, -0.03, 0.19}, {0.1, 0.15, 0.4})),
-                "upper box");
+  auto const upper = model.add(
+      Rigid<>(mass, inertia_of_box(mass, small), Placement::at({0.05, -0.03, 0.19}, {0.1, 0.15, 0.4})), "upper box");
   model.apply(Floor{{.size = large, .rounding = 0.01}, pads, rough}, lower.at(Vec3(0, 0, 0)),
               model.ground().at({0, 0, 0}), "floor");
-  auto const stack = model.apply(Stack{{.size_a = small, .rounding_a = 0.01, .size_b = large, .rounding_b = 0.01, .taper = taper},
-                    pads, rough},
-              upper.at(Vec3(0, 0, 0)), lower.at(Vec3(0, 0, 0)), "stack");
+  auto const stack = model.apply(
+      Stack{{.size_a = small, .rounding_a = 0.01, .size_b = large, .rounding_b = 0.01, .taper = taper}, pads, rough},
+      upper.at(Vec3(0, 0, 0)), lower.at(Vec3(0, 0, 0)), "stack");
   State x = model.reference_state();
   Probe probe(model);
   for (State const& now : simulate(model, x, damped, {.end_time = 1.5, .step = 5e-4})) {
@@ -85,7 +84,8 @@ TEST(ContactShapes, BoxFallsOnABoxAndSettles) {
     seen.for_each_contact(stack, [&](TouchingPoint const& p) { load += p.force[2]; });
     EXPECT_NEAR(load, mass * g, 1e-6);
   }
-  Frame<double> const on_top = frame(model, x, upper.at(Vec3(0, 0, 0))), below = frame(model, x, lower.at(Vec3(0, 0, 0)));
+  Frame<double> const on_top = frame(model, x, upper.at(Vec3(0, 0, 0))),
+                      below = frame(model, x, lower.at(Vec3(0, 0, 0)));
   EXPECT_LT(speed(on_top) + speed(below), 1e-4);
   EXPECT_NEAR(on_top.A.col(2).dot(below.A.col(2)), 1.0, 1e-9);
   held(closed_form("depth of a box on a box [m]", "(m g/k + τ)/4", "BoxOnBox, generalised-alpha, h = 0.5 ms"),
@@ -98,12 +98,11 @@ TEST(ContactShapes, CapsuleLiesAcrossTwoCapsules) {
   using Cross = Contact<CapsuleOnCapsule>;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Cross>> model{Gravity{0, 0, -g}};
   auto const bar = model.add(Rigid<>(mass, Vec3(0.001, 0.02, 0.02).asDiagonal(), Placement::at({0, 0, 0.06})), "bar");
-  Cross const cross{
-      {.radius_a = 0.03, .length_a = 0.5, .radius_b = 0.03, .length_b = 0.3, .taper = 1e-5}, pads, rough};
+  Cross const cross{{.radius_a = 0.03, .length_a = 0.5, .radius_b = 0.03, .length_b = 0.3, .taper = 1e-5}, pads, rough};
   ElementHandle<Cross> at[2];
   for (int i = 0; i < 2; ++i)
     at[i] = model.apply(cross, bar.at(Vec3(0, 0, 0)),
-                        model.ground().at({i == 0 ? -0.1 : 0.2, 0, 0}, exp_so3<double>(Vec3(0, 0, 0.5 * EIGEN_PI))),
+                        model.ground().at(Placement::at({i == 0 ? -0.1 : 0.2, 0, 0}, {0, 0, 0.5 * EIGEN_PI})),
                         i == 0 ? "left" : "right");
   State x = model.reference_state();
   Probe probe(model);
@@ -198,8 +197,8 @@ Vec3 const block(0.1, 0.12, 0.16), base(0.5, 0.5, 0.2);
 BoxOnBox const boxes{.size_a = block, .rounding_a = 0.01, .size_b = base, .rounding_b = 0.01, .taper = 5e-5};
 
 TEST(ContactShapes, BoxTumblesOnABoxWithoutLossOfEnergy) {
-  expect_conserved(boxes, inertia_of_box(mass, block), Placement::at({0.1, 0, 0.25}, {0.3, 0.5, 0.1}),
-                   {0.3, 0.1, 0}, {1, 4, 1}, 0.5);
+  expect_conserved(boxes, inertia_of_box(mass, block), Placement::at({0.1, 0, 0.25}, {0.3, 0.5, 0.1}), {0.3, 0.1, 0},
+                   {1, 4, 1}, 0.5);
 }
 // aligned faces, with one face beyond an edge
 TEST(ContactShapes, BoxFallsFlatOnTheEdgeOfABoxWithoutLossOfEnergy) {
@@ -223,8 +222,8 @@ TEST(ContactShapes, CapsuleFallsAcrossABoxWithoutLossOfEnergy) {
 }
 TEST(ContactShapes, EnergyAuditOfBoxesCloses) {
   OverGround<Contact<BoxOnBox, HuntCrossleyContact>> const pair(
-      {boxes, {.stiffness = 2e6, .damping = 0.5}, {.coefficient = 0.3, .slip_speed = 0.1}},
-      inertia_of_box(mass, block), Placement::at({0.1, 0, 0.22}, {0.3, 0.5, 0.1}));
+      {boxes, {.stiffness = 2e6, .damping = 0.5}, {.coefficient = 0.3, .slip_speed = 0.1}}, inertia_of_box(mass, block),
+      Placement::at({0.1, 0, 0.22}, {0.3, 0.5, 0.1}));
   State x = pair.start({0.3, 0.1, 0}, {1, 4, 1});
   EnergyAudit audit(pair.model);
   for (State const& now : simulate(pair.model, x, RungeKutta4{}, {.end_time = 0.25, .step = 1e-5})) audit.record(now);

@@ -31,23 +31,21 @@ TEST(HostileParameters, OfContactShapes) {
   tried += try_shape(PolyhedronOnPlane<>{.corners = {{0.1, 0, -0.385}, {0, 0.1, -0.385}}, .rounding = 0.01},
                      "PolyhedronOnPlane");
   tried += try_shape(CapsuleOnSphere{.radius = 0.2, .length = 0.5, .sphere = 0.19}, "CapsuleOnSphere");
-  tried += try_shape(
-      CapsuleOnCapsule{.radius_a = 0.2, .length_a = 0.5, .radius_b = 0.19, .length_b = 0.5, .taper = 1e-4},
-      "CapsuleOnCapsule");
+  tried +=
+      try_shape(CapsuleOnCapsule{.radius_a = 0.2, .length_a = 0.5, .radius_b = 0.19, .length_b = 0.5, .taper = 1e-4},
+                "CapsuleOnCapsule");
   std::cout << tried << " parameters of capsules and shapes on a plane\n";
 }
 TEST(HostileParameters, OfContactBoxes) {
   int tried = 0;
   tried += try_shape(SphereOnBox{.radius = 0.2, .size = {0.5, 0.5, 0.38}, .rounding = 0.01}, "SphereOnBox");
+  tried +=
+      try_shape(CapsuleOnBox{.radius = 0.2, .length = 0.4, .size = {0.5, 0.5, 0.38}, .rounding = 0.01, .taper = 1e-4},
+                "CapsuleOnBox");
   tried += try_shape(
-      CapsuleOnBox{.radius = 0.2, .length = 0.4, .size = {0.5, 0.5, 0.38}, .rounding = 0.01, .taper = 1e-4},
-      "CapsuleOnBox");
-  tried += try_shape(BoxOnBox{.size_a = {0.3, 0.3, 0.4},
-                              .rounding_a = 0.02,
-                              .size_b = {0.5, 0.5, 0.38},
-                              .rounding_b = 0.02,
-                              .taper = 1e-4},
-                     "BoxOnBox");
+      BoxOnBox{
+          .size_a = {0.3, 0.3, 0.4}, .rounding_a = 0.02, .size_b = {0.5, 0.5, 0.38}, .rounding_b = 0.02, .taper = 1e-4},
+      "BoxOnBox");
   std::cout << tried << " parameters of boxes\n";
 }
 // The placements of a compound are checked, and so are its shapes.

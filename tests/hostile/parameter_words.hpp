@@ -75,9 +75,9 @@ inline constexpr auto words_of<SphereOnBox> = words("sphere's radius", "size|rou
 template <>
 inline constexpr auto words_of<CapsuleOnBox> = words("radius", "length", "size|rounding", "rounding", "taper");
 template <>
-inline constexpr auto words_of<BoxOnBox> = words("size of the first|rounding of the first", "rounding of the first",
-                                                 "size of the second|rounding of the second", "rounding of the second",
-                                                 "taper");
+inline constexpr auto words_of<BoxOnBox> =
+    words("size of the first|rounding of the first", "rounding of the first",
+          "size of the second|rounding of the second", "rounding of the second", "taper");
 
 // contacts of vehicles
 template <>

@@ -128,8 +128,8 @@ Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(),
   return s;
 }
 
-/// Capsule of `radius` [m] about a segment of `length` [m] along `axis`, with its centre at the origin, like the capsules
-/// of contacts. Its section has this number of `sides`, and each end consists of `sides`/4 rings.
+/// Capsule of `radius` [m] about a segment of `length` [m] along `axis`, with its centre at the origin, like the
+/// capsules of contacts. Its section has this number of `sides`, and each end consists of `sides`/4 rings.
 /// \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are at least four sides.
 template <class T = double>  // compiled where it is used
 Surface capsule(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {

@@ -85,7 +85,7 @@ double power(System const& system, State const& x, ElementHandle<J> const& joint
 
 /// Contact point in a state.
 struct TouchingPoint {
-  Index body;                  ///< index of the body's marker among the `many()` markers of the group; 0 for one contact
+  Index body;  ///< index of the body's marker among the `many()` markers of the group; 0 for one contact
   std::string const* against;  ///< name of the partner in the contact; for one contact, its own name
   Vec3 place;                  ///< (3) position, world axes [m]
   Vec3 normal;                 ///< (3) unit vector towards the body

@@ -30,7 +30,7 @@ template <class Case>
 struct ContactShapeLaws {
   static constexpr char const* suite = "ContactShapeLaws";
   using G = decltype(Case::geometry());  ///< type of the geometry
-  using Contacts = Contact<G>;               ///< contact with spring and damper
+  using Contacts = Contact<G>;           ///< contact with spring and damper
   G const geometry = Case::geometry();   ///< geometry under test
   Numbers number;                        ///< random numbers with a fixed seed
 
@@ -172,8 +172,8 @@ struct ContactShapeLaws {
       auto const w = law().template wrenches<double>(f, 0.0);
       double power = 0.0;
       for (std::size_t i = 0; i < 2; ++i) power += w[i].f.dot(f[i].v) + w[i].m.dot(f[i].w);
-      double const rate = slope_at_zero(
-          [&](double t) { return law().potential(Touching{later(f[0], t), later(f[1], t)}, 0.0); }, 1e-6);
+      double const rate =
+          slope_at_zero([&](double t) { return law().potential(Touching{later(f[0], t), later(f[1], t)}, 0.0); }, 1e-6);
       EXPECT_NEAR(power, -rate, 1e-6 * w[0].f.norm());
     }
   }  ///< the power of the force is the rate at which the potential decreases

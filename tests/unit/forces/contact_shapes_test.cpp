@@ -104,11 +104,8 @@ struct CapsuleOnBoxCase : InSpace {
 };
 struct BoxOnBoxCase : InSpace {
   static BoxOnBox geometry() {
-    return {.size_a = {0.5, 0.6, 0.4},
-            .rounding_a = 0.05,
-            .size_b = {0.6, 0.8, 1.1},
-            .rounding_b = 0.04,
-            .taper = 0.004};
+    return {
+        .size_a = {0.5, 0.6, 0.4}, .rounding_a = 0.05, .size_b = {0.6, 0.8, 1.1}, .rounding_b = 0.04, .taper = 0.004};
   }
   static double outside_a(Vec3 const& p) { return outside_box({0.5, 0.6, 0.4}, 0.05, p); }
   static double outside_b(Vec3 const& p) { return outside_box({0.6, 0.8, 1.1}, 0.04, p); }

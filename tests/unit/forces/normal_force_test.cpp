@@ -198,8 +198,8 @@ TEST(NormalForces, ExplicitFormulasForTheRestitutionHaveTheStatedErrors) {
   struct Stated {
     double wanted, decrement, hunt_crossley;
   };
-  for (Stated const& s : {Stated{0.95, 0.951, 0.952}, Stated{0.7, 0.718, 0.768}, Stated{0.5, 0.550, 0.663},
-                          Stated{0.1, 0.253, 0.516}}) {
+  for (Stated const& s :
+       {Stated{0.95, 0.951, 0.952}, Stated{0.7, 0.718, 0.768}, Stated{0.5, 0.550, 0.663}, Stated{0.1, 0.253, 0.516}}) {
     double const e = s.wanted, zeta = -std::log(e) / std::hypot(std::numbers::pi, std::log(e));
     SpringDamperContact const spring{.stiffness = k, .damping = 2.0 * zeta * std::sqrt(k * m)};
     EXPECT_NEAR(restitution(spring, m, speed, step), s.decrement, 6e-4);
@@ -218,7 +218,9 @@ TEST(SpringDamperContact, OnsetRaisesTheRestitutionOfSlowImpacts) {
   for (double const speed : {1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0}) {
     double const e = restitution(law, m, speed, 1e-6), first_order = 2.0 / 3.0 * law.damping * speed / (k * onset);
     EXPECT_LT(e, before) << speed;
-    if (speed < 0.01) EXPECT_NEAR(1.0 - e, first_order, 3.0 * first_order * first_order) << speed;
+    if (speed < 0.01) {
+      EXPECT_NEAR(1.0 - e, first_order, 3.0 * first_order * first_order) << speed;
+    }
     before = e;
   }
   EXPECT_NEAR(before, 0.5, 0.01);

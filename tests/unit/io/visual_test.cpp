@@ -66,8 +66,7 @@ TEST(Surface, CapsuleIsClosedAndRound) {
   expect_closed(s);
   double const volume_of_capsule = pi * 0.09 * 2.0 + 4.0 / 3.0 * pi * 0.027;
   EXPECT_NEAR(volume(s), volume_of_capsule, 0.01 * volume_of_capsule);
-  for (Vec3 const& p : s.points)
-    EXPECT_NEAR((p - std::clamp(p.dot(axis), -1.0, 1.0) * axis).norm(), 0.3, 0.003);
+  for (Vec3 const& p : s.points) EXPECT_NEAR((p - std::clamp(p.dot(axis), -1.0, 1.0) * axis).norm(), 0.3, 0.003);
 }
 
 TEST(Surface, RefusesWhatHasNoShape) {

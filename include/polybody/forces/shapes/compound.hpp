@@ -45,7 +45,9 @@ class Compound {
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
     bool may = false;
-    each([&](auto const& shape) { may = may || shape.geometry.may_touch(frame_of<double>(a, shape.place), frame_of<double>(b, shape.partner)); });
+    each([&](auto const& shape) {
+      may = may || shape.geometry.may_touch(frame_of<double>(a, shape.place), frame_of<double>(b, shape.partner));
+    });
     return may;
   }
   template <StateScalar T, class Visit>
