@@ -188,7 +188,7 @@ TEST(BoxOnPlaneCase, RocksAboutAnEdgeLikeARigidBlock) {
 
 // --- energy -------------------------------------------------------------------------------------------------------
 
-/// Tumbles over the floor: corners, edges and faces touch one after the other.
+/// Box that tumbles over the floor, with changing sets of contact points.
 OnFloor<Round> tumbling(double damping, double friction) {
   Vec3 const size(0.08, 0.12, 0.16);
   return {{.geometry = {.size = size, .rounding = 0.004},

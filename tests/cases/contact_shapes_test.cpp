@@ -5,6 +5,7 @@
 #include <array>
 
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/shapes/box_contact.hpp>
 #include <polybody/forces/shapes/capsule_contact.hpp>
@@ -89,8 +90,26 @@ TEST(ContactShapes, BoxFallsOnABoxAndSettles) {
   EXPECT_LT(speed(on_top) + speed(below), 1e-4);
   EXPECT_NEAR(on_top.A.col(2).dot(below.A.col(2)), 1.0, 1e-9);
   held(closed_form("depth of a box on a box [m]", "(m g/k + τ)/4", "BoxOnBox, generalised-alpha, h = 0.5 ms"),
-       0.1 - (on_top.r[2] - below.r[2]), 0.25 * (mass * g / k + taper), 1e-8);
+       0.1 - (on_top.r - below.r).dot(below.A.col(2)), 0.25 * (mass * g / k + taper), 1e-8);
   EXPECT_NEAR(below.r[2], 0.05 - 3.0 * mass * g / (4.0 * k), 1e-8);
+}
+
+// The bristles of a box on an inclined box hold it: after the first second it does not creep.
+TEST(ContactShapes, BoxSticksToAnInclinedBox) {
+  using Stick = Contact<BoxOnBox, SpringDamperContact, BristleFriction>;
+  double const slope = std::atan(0.3);
+  Vec3 const size(0.1, 0.1, 0.08);
+  OverGround<Stick> const box(
+      {{.size_a = size, .rounding_a = 0.01, .size_b = {1, 1, 0.2}, .rounding_b = 0.02, .taper = 1e-5},
+       pads,
+       {.coefficient = 0.5, .stiffness = 1e5, .damping = 60.0}},
+      inertia_of_box(mass, size), Placement::at({0, 0, 0.14 - 2.4e-5}), {g * std::sin(slope), 0, -g * std::cos(slope)});
+  State x = box.start({0, 0, 0}, {0, 0, 0});
+  simulate(box.model, x, damped, {.end_time = 1.0, .step = 5e-4}).run();
+  Frame<double> const before = box.frame_in(x);
+  simulate(box.model, x, damped, {.end_time = 3.0, .step = 5e-4}).run();
+  EXPECT_LT((box.frame_in(x).r - before.r).norm(), 1e-9);
+  EXPECT_LT(before.r[0], 1e-4);
 }
 
 // A capsule across two fixed ones, with its centre at 0.1 m and 0.2 m from them: lever rule.

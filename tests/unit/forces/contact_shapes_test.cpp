@@ -6,6 +6,8 @@
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/testing/contact_shape_laws.hpp>
 
+#include "support/refusal.hpp"
+
 using namespace polybody;
 using namespace polybody::laws;
 
@@ -124,5 +126,89 @@ bool const obeyed[] = {obeys<BoxOnPlaneCase, ContactShapeLaws>("BoxOnPlane"),
                        obeys<SphereOnBoxCase, ContactShapeLaws>("SphereOnBox"),
                        obeys<CapsuleOnBoxCase, ContactShapeLaws>("CapsuleOnBox"),
                        obeys<BoxOnBoxCase, ContactShapeLaws>("BoxOnBox")};
+
+// --- values computed by hand ----------------------------------------------------------------------------------
+
+// Inside of the core the nearest face pushes the sphere out: its centre is 0.1 below the face x = 0.3.
+TEST(SphereOnBox, NearestFacePushesTheSphereOutOfTheCore) {
+  SphereOnBox const geometry{.radius = 0.2, .size = {0.6, 0.8, 1.0}};
+  auto const p = point_of(geometry, Frame<double>{.r = {0.2, 0.05, 0.1}}, Frame<double>{});
+  EXPECT_NEAR(p.depth, 0.3, 1e-15);
+  EXPECT_EQ(p.normal, Vec3(1, 0, 0));
+}
+// A path through the box passes; a path beside it, a path to its other side around an edge, and a start inside do not.
+TEST(SphereOnBox, PassesOnlyOnPathsThroughTheBox) {
+  SphereOnBox const geometry{.radius = 0.1, .size = {0.4, 0.4, 0.4}, .rounding = 0.02};
+  auto const passes = [&](Vec3 const& x, Vec3 const& y) {
+    Frame<double> const from[2] = {{.r = x}, {}}, to[2] = {{.r = y}, {}};
+    return geometry.passes(from, to);
+  };
+  EXPECT_TRUE(passes({-0.5, 0.1, 0}, {0.5, 0, 0.1}));
+  EXPECT_TRUE(passes({-0.4, 0.2, 0}, {0.1, 0.4, 0}));
+  EXPECT_FALSE(passes({-0.5, 0.31, 0}, {0.5, 0.31, 0}));
+  EXPECT_FALSE(passes({-0.5, 0, 0}, {-0.35, 0, 0}));
+  EXPECT_FALSE(passes({-0.25, 0, 0}, {0.5, 0, 0}));
+}
+TEST(CapsuleOnSphere, PassesOnlyOnPathsThroughTheCapsule) {
+  CapsuleOnSphere const geometry{.radius = 0.1, .length = 0.6, .sphere = 0.1};
+  auto const passes = [&](Vec3 const& x, Vec3 const& y) {
+    Frame<double> const from[2] = {{}, {.r = x}}, to[2] = {{}, {.r = y}};
+    return geometry.passes(from, to);
+  };
+  EXPECT_TRUE(passes({0.2, -0.3, 0}, {0.2, 0.3, 0.1}));
+  EXPECT_FALSE(passes({0.6, -0.3, 0}, {0.6, 0.3, 0}));
+  EXPECT_FALSE(passes({0.2, -0.1, 0}, {0.2, 0.3, 0}));
+}
+// Crossing axes: both points are at the crossing, x = 0.2 on a, and lose ½ κ (s − s_k)² = τ (s − s_k)²/(2 l)², where
+// l = 0.5 is the half length of a. Parallel axes: the points are at the ends of the common length.
+TEST(CapsuleOnCapsule, PointsMeetAtACrossingAndPartForParallelAxes) {
+  double const taper = 1e-3;
+  CapsuleOnCapsule const geometry{.radius_a = 0.1, .length_a = 1.0, .radius_b = 0.2, .length_b = 0.6, .taper = taper};
+  auto const points = [&](Touching const& f) {
+    std::vector<ContactPoint<double>> all;
+    geometry.for_each_point<double>(f[0], f[1], [&](auto const& p) { all.push_back(p); });
+    return all;
+  };
+  auto const crossing = points(placed({-0.2, 0, 0.28}, {0, 0, right}));
+  ASSERT_EQ(crossing.size(), 2u);  // the axis of a is along y, its middle at x = -0.2 on the axis of b
+  for (auto const& p : crossing) {
+    EXPECT_LT((p.place.head<2>() - Vec2(-0.2, 0)).norm(), 2e-3);
+    EXPECT_NEAR(p.depth, 0.02 - 0.25 * taper, 1e-6);
+  }
+  auto const parallel = points(placed({0.1, 0, 0.28}));
+  ASSERT_EQ(parallel.size(), 2u);  // a: x from -0.4 to 0.6, b: x from -0.3 to 0.3
+  EXPECT_NEAR(parallel[0].place[0], -0.3, 2e-3);
+  EXPECT_NEAR(parallel[1].place[0], 0.3, 2e-3);
+  EXPECT_NEAR(parallel[0].depth, 0.02 - 0.01 * taper, 1e-5);
+  EXPECT_NEAR(parallel[1].depth, 0.02 - 0.09 * taper, 1e-5);
+}
+
+// --- bad input ------------------------------------------------------------------------------------------------
+
+TEST(ContactShapes, RefuseSizesByName) {
+  auto const told = [](auto const& shape) { return refusal([&] { shape.check("\"crate\""); }); };
+  EXPECT_TRUE(has(told(BoxOnPlane{}), "\"crate\": the size of the box must be positive and finite, but is 0"));
+  EXPECT_TRUE(has(told(BoxOnPlane{.size = {1, 0.2, 1}, .rounding = 0.11}),
+                  "\"crate\": the rounding of the box must lie between 0 and half of the smallest size, 0.1 m, but is "
+                  "0.11 m"));
+  EXPECT_TRUE(has(told(BoxOnPlane{.size = {1, 1, 1}, .rounding = -0.1}), "but is -0.1 m"));
+  EXPECT_TRUE(
+      has(told(PolyhedronOnPlane<>{}), "the number of corners of the polyhedron must lie in [1, 16], but is 0"));
+  EXPECT_TRUE(has(told(PolyhedronOnPlane<2>{.corners = std::vector<Vec3>(3, Vec3::Zero())}), "[1, 2], but is 3"));
+  EXPECT_TRUE(has(told(SphereOnBox{.radius = 0.0, .size = {1, 1, 1}}),
+                  "the sum of the sphere's radius and the rounding of the box must be positive"));
+  EXPECT_TRUE(has(told(CapsuleOnSphere{.radius = 0.0, .length = 1.0, .sphere = 0.0}),
+                  "the sum of the radii of capsule and sphere must be positive"));
+  EXPECT_TRUE(
+      has(told(CapsuleOnCapsule{.radius_a = 0.0, .length_a = 1.0, .radius_b = 0.0, .length_b = 1.0, .taper = 0.1}),
+          "the sum of the radii of the capsules must be positive"));
+  EXPECT_TRUE(has(told(CapsuleOnBox{.radius = 0.0, .length = 1.0, .size = {1, 1, 1}, .taper = 0.1}),
+                  "the sum of the capsule's radius and the rounding of the box must be positive"));
+  BoxOnBox boxes{.size_a = {1, 1, 1}, .rounding_a = 0.0, .size_b = {1, 1, 1}, .rounding_b = 0.0, .taper = 0.1};
+  EXPECT_TRUE(has(told(boxes), "the sum of the roundings of the boxes must be positive"));
+  boxes.rounding_b = 0.1;
+  boxes.taper = 0.0;
+  EXPECT_TRUE(has(told(boxes), "\"crate\": the taper of the edges must be positive and finite, but is 0"));
+}
 
 }  // namespace contact_shapes_test

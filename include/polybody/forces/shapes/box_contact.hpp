@@ -39,12 +39,8 @@ struct SphereOnBox {
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
-    Vec<T, 3> const c = place<T>(a, b);
-    auto const from = detail::distance_from<T>(detail::core_of(size, rounding), c);
-    T const depth = T(radius + rounding) - from.distance;
-    if (!(value_of(depth) > 0.0)) return;
-    Vec<T, 3> const middle = detail::shifted<T>(c, from.normal, T(rounding) - depth * 0.5 - from.distance);
-    visit(detail::in_world<T>(ContactPoint<T>{middle, from.normal, depth}, b.r, b.A, 1.0));
+    detail::touch_box<T>(detail::core_of(size, rounding), place<T>(a, b), radius, rounding,
+                         [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, b.A, 1.0)); });
   }
 
  private:
@@ -101,16 +97,17 @@ struct CapsuleOnBox {
 /// Boxes about both markers, with their edges along the axes of the markers. The edges of both boxes are rounded; the
 /// sum of the two radii must exceed the penetration.
 ///
-/// Each of the twelve edges of a touches box b like the axis of a capsule, with two points (`detail::touch_box`), and
-/// each edge of b touches box a. The potential is the sum over these points,
-///   U = ¼ Σ U(d_k),
-/// in which every depth d_k is a continuously differentiable function of the poses. So the force is continuous and
+/// Each of the twelve edges of a touches box b like the axis of a capsule, with two points (`detail::touch_box`). Each
+/// of the eight corners of b touches box a like a sphere. The potential is the sum over these points,
+///   U = ¼ Σ U(d of edges) + Σ U(d of corners),
+/// in which every depth d is a continuously differentiable function of the poses. So the force is continuous and
 /// conservative when a corner passes over an edge, and when faces or edges become parallel.
-/// With the weight ¼, two crossing edges have the stiffness k of the normal force law in total (4 points), a corner on
-/// a face has up to 3/2 k (6 points), and a corner of a face that lies on a larger face has k (4 points).
+/// With the stiffness k of the normal force law, a corner of a face of a that lies on a larger face has the stiffness k
+/// (4 points), and so has a corner of b. A single corner of a has up to 3/2 k (6 points), and two crossing edges have
+/// k/2 (2 points).
 struct BoxOnBox {
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr int most_points = 48;
+  static constexpr int most_points = 32;
   Vec3 size_a = Vec3::Zero();   ///< (3) lengths of the edges of box a [m]; must be set
   Required<double> rounding_a;  ///< radius of the edges and corners of box a [m]
   Vec3 size_b = Vec3::Zero();   ///< (3) lengths of the edges of box b [m]; must be set
@@ -134,16 +131,17 @@ struct BoxOnBox {
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     Vec3 const core_a = detail::core_of(size_a, rounding_a), core_b = detail::core_of(size_b, rounding_b);
-    detail::SegmentOnBox const a_on_b{
-        .half = 0.0, .radius = rounding_a, .rounding = rounding_b, .taper = taper, .share = 0.25};
-    detail::SegmentOnBox const b_on_a{
-        .half = 0.0, .radius = rounding_b, .rounding = rounding_a, .taper = taper, .share = 0.25};
-    edges<T>(a, core_a, b, core_b, a_on_b,
+    edges<T>(a, core_a, b, core_b,
+             {.half = 0.0, .radius = rounding_a, .rounding = rounding_b, .taper = taper, .share = 0.25},
              [&](ContactPoint<T> const& p) { visit(detail::in_world<T>(p, b.r, b.A, 1.0)); });
-    edges<T>(b, core_b, a, core_a, b_on_a, [&](ContactPoint<T> p) {
-      p.slot += 24;
-      visit(detail::in_world<T>(p, a.r, a.A, -1.0));
-    });
+    Vec<T, 3> const arm = b.r - a.r, middle = detail::in_axes<T>(a.A, arm);
+    Mat<T, 3, 3> const axes = detail::axes_in<T>(a.A, b.A);
+    for (int corner = 0; corner < 8; ++corner)
+      detail::touch_box<T>(core_a, detail::corner_of<T>(middle, axes, core_b, corner), rounding_b, rounding_a,
+                           [&](ContactPoint<T> p) {
+                             p.slot = 24 + corner;
+                             visit(detail::in_world<T>(p, a.r, a.A, -1.0));
+                           });
   }
 
  private:
@@ -164,15 +162,15 @@ struct BoxOnBox {
   static void edges(Frame<T> const& a, Vec3 const& h_a, Frame<T> const& b, Vec3 const& h_b, detail::SegmentOnBox shape,
                     Visit&& visit) {
     Vec<T, 3> const arm = a.r - b.r, middle = detail::in_axes<T>(b.A, arm);
-    Vec<T, 3> const axes[3] = {detail::in_axes<T>(b.A, detail::axis_of<T>(a.A, 0)),
-                               detail::in_axes<T>(b.A, detail::axis_of<T>(a.A, 1)),
-                               detail::in_axes<T>(b.A, detail::axis_of<T>(a.A, 2))};
+    Mat<T, 3, 3> const axes = detail::axes_in<T>(b.A, a.A);
     for (int edge = 0; edge < 12; ++edge) {
       int const i = edge / 4, j = (i + 1) % 3, k = (i + 2) % 3;
-      Vec<T, 3> const at = detail::shifted<T>(detail::shifted<T>(middle, axes[j], T((edge & 1) ? h_a[j] : -h_a[j])),
-                                              axes[k], T((edge & 2) ? h_a[k] : -h_a[k]));
+      Vec3 from = Vec3::Zero();  // middle of the edge in axes of a
+      from[j] = (edge & 1) ? h_a[j] : -h_a[j];
+      from[k] = (edge & 2) ? h_a[k] : -h_a[k];
+      Vec<T, 3> const at = detail::point_of<T>(middle, axes, from);
       shape.half = h_a[i];
-      detail::touch_box<T>(h_b, at, axes[i], shape, [&](ContactPoint<T> p) {
+      detail::touch_box<T>(h_b, at, detail::axis_of<T>(axes, i), shape, [&](ContactPoint<T> p) {
         p.slot += 2 * edge;
         visit(p);
       });

@@ -17,6 +17,27 @@ template <StateScalar T>
 Vec<T, 3> in_axes(Mat<T, 3, 3> const& A, Vec<T, 3> const& x) {
   return {axis_of<T>(A, 0).dot(x), axis_of<T>(A, 1).dot(x), axis_of<T>(A, 2).dot(x)};
 }
+/// Axes B in the axes A, AᵀB (3×3).
+template <StateScalar T>
+Mat<T, 3, 3> axes_in(Mat<T, 3, 3> const& A, Mat<T, 3, 3> const& B) {
+  Mat<T, 3, 3> axes;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) axes(i, k) = A(0, i) * B(0, k) + A(1, i) * B(1, k) + A(2, i) * B(2, k);
+  return axes;
+}
+/// Point r + A p, with p (3) in the axes A [m].
+template <StateScalar T>
+Vec<T, 3> point_of(Vec<T, 3> const& r, Mat<T, 3, 3> const& A, Vec3 const& p) {
+  Vec<T, 3> at = r;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) at[i] += A(i, k) * p[k];
+  return at;
+}
+/// Corner number `corner`, from 0 to 7, of a box with half sizes h (3) [m] about r, with its edges along the axes A.
+template <StateScalar T>
+Vec<T, 3> corner_of(Vec<T, 3> const& r, Mat<T, 3, 3> const& A, Vec3 const& h, int corner) {
+  return point_of<T>(r, A, {(corner & 1) ? h[0] : -h[0], (corner & 2) ? h[1] : -h[1], (corner & 4) ? h[2] : -h[2]});
+}
 /// Right-handed axes (3×3) with the unit vector x as their first column.
 template <StateScalar T>
 Mat<T, 3, 3> axes_about(Vec<T, 3> const& x) {
@@ -161,6 +182,19 @@ void touch_box(Vec3 const& h, Vec<T, 3> const& m, Vec<T, 3> const& u, SegmentOnB
     point.slot = k;
     visit(point);
   }
+}
+
+/// Contact point of a sphere of radius `radius` about c (3) with the rounded box of half sizes h (3), in axes of the
+/// box [m].
+template <StateScalar T, class Visit>
+void touch_box(Vec3 const& h, Vec<T, 3> const& c, double radius, double rounding, Visit&& visit) {
+  Vec3 const at = values_of(c);
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(at[i]) >= h[i] + radius + rounding) return;
+  BoxDistance<T> const from = distance_from<T>(h, c);
+  T const depth = T(radius + rounding) - from.distance;
+  if (value_of(depth) > 0.0)
+    visit(ContactPoint<T>{shifted<T>(c, from.normal, T(rounding) - depth * 0.5 - from.distance), from.normal, depth});
 }
 
 /// Moves a point from the axes A at r to world axes, with the normal multiplied by `sign`.

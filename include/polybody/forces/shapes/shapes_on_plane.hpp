@@ -54,12 +54,8 @@ struct BoxOnPlane {
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     Vec3 const core = detail::core_of(size, rounding);
-    for (int corner = 0; corner < most_points; ++corner) {
-      Vec<T, 3> centre = a.r;
-      for (int i = 0; i < 3; ++i)
-        centre = detail::shifted<T>(centre, detail::axis_of<T>(a.A, i), T((corner >> i & 1) ? core[i] : -core[i]));
-      detail::touch_plane<T>(centre, rounding, b, corner, visit);
-    }
+    for (int corner = 0; corner < most_points; ++corner)
+      detail::touch_plane<T>(detail::corner_of<T>(a.r, a.A, core, corner), rounding, b, corner, visit);
   }
 };
 
@@ -128,11 +124,7 @@ struct PolyhedronOnPlane {
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
     int slot = 0;
-    for (Vec3 const& p : corners) {
-      Vec<T, 3> centre = a.r;
-      for (int i = 0; i < 3; ++i) centre = detail::shifted<T>(centre, detail::axis_of<T>(a.A, i), T(p[i]));
-      detail::touch_plane<T>(centre, rounding, b, slot++, visit);
-    }
+    for (Vec3 const& p : corners) detail::touch_plane<T>(detail::point_of<T>(a.r, a.A, p), rounding, b, slot++, visit);
   }
 };
 
