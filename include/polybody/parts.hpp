@@ -1,8 +1,12 @@
 #pragma once
 /// \file
-/// Headers for ready parts of mechanisms: contact shapes.
+/// Ready parts of mechanisms: springs on joints, limits and impacts at limits, contact shapes.
 
+#include <polybody/forces/limits.hpp>
+#include <polybody/forces/scalar_force.hpp>
 #include <polybody/forces/shapes/box_contact.hpp>
 #include <polybody/forces/shapes/capsule_contact.hpp>
 #include <polybody/forces/shapes/compound.hpp>
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
+#include <polybody/forces/spring_laws.hpp>
+#include <polybody/run/impact_at_limit.hpp>

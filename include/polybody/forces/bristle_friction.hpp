@@ -2,6 +2,7 @@
 /// \file
 /// Contact friction with a bristle at each contact point, which sticks without creep.
 
+#include <polybody/forces/bristle.hpp>
 #include <polybody/forces/contact.hpp>
 
 namespace polybody {
@@ -23,15 +24,6 @@ struct BristleFriction {
     require_not_negative(coefficient, name, ": the coefficient of friction");
     require_positive(stiffness, name, ": the bristle stiffness of the friction");
     require_positive(damping, name, ": the bristle damping of the friction");
-  }
-  /// Factor of σ₀ z + σ₁ v in R, at most 1. \param trial (3) σ₀ z + σ₁ v [N] \param n normal force N [N]
-  template <StateScalar T>
-  T share_that_holds(Vec<T, 3> const& trial, T const& n) const {
-    using std::sqrt;
-    T const square = trial.dot(trial);
-    double const limit = coefficient * value_of(n);
-    if (!(value_of(square) > limit * limit)) return T(1.0);
-    return n * coefficient.value / sqrt(square);
   }
 };
 
@@ -139,7 +131,7 @@ struct Contact<G, N, BristleFriction> {
           bristle.slip = detail::shifted<T>(v, p.normal, -v.dot(p.normal));
           bristle.share = T(1.0);
           Vec<T, 3> const trial = bristle.resistance(friction);
-          bristle.share = friction.share_that_holds<T>(trial, n);
+          bristle.share = detail::held_share<T>(trial.dot(trial), T(n * friction.coefficient.value));
           visit(p, bristle, n);
         });
   }

@@ -36,6 +36,19 @@ constexpr void require_joint_coordinate() {
                 "of the first one.");
 }
 
+/// Refuses at compile time a force F that follows another type of joint than J, or multipliers in a model that
+/// `eliminates` unknowns.
+template <class F, class J, bool eliminates>
+constexpr void require_followed() {
+  static_assert(std::is_same_v<typename F::FollowedJoint, J>,
+                "This friction follows the reaction of another type of joint. Its first template argument must be the "
+                "type of the joint to which it is applied.");
+  static_assert(
+      !eliminates || F::multipliers == 0,
+      "Friction that follows multipliers needs a model without eliminated unknowns: use Constraint instead of "
+      "JointCoordinates and AncfLinear in all joints of the model.");
+}
+
 /// Axis of a joint's coordinate among the axes of its markers. \throws InvalidInput naming the force if the joint has
 /// no such coordinate, or several.
 template <class J>
@@ -97,9 +110,9 @@ inline void turn_marker(ModelParts& parts, Index published, int k) {
 template <JointForce F, class... Bs>
 ElementHandle<F> add_joint_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                                  std::tuple<BodyPool<Bs>...>& bodies, std::array<Index, 2> markers, int k) {
+  name = checked_force_name(parts, pool, force, std::move(name));
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[0], F::needs, name), ...);
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[1], needs_of_second<F>(), name), ...);
-  name = checked_force_name(parts, pool, force, std::move(name));
   parts.origin.change();
   if (k != 2)
     for (Index& marker : markers) {

@@ -175,7 +175,9 @@ struct ForceLaws {
     if constexpr (stores) {
       Frames const f = at_rest(frames());
       VecX const w = stacked(f).head(6 * markers);
-      EXPECT_GT(w.norm(), 0.0);
+      if (energy(f, z) != 0.0) {
+        EXPECT_GT(w.norm(), 0.0);
+      }
       VecX by_states = VecX::Zero(6 * markers);
       if constexpr (HasStates<F>) {
         auto const gradient = gradient_with_states(force, f, z, t, {0.0, 1.0, 0.0});

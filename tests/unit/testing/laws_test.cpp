@@ -212,7 +212,11 @@ struct Push {
   static PointForce<> force() { return {.force = {Vec3(3.0, -1.0, 2.0)}}; }
 };
 bool const push_obeys = obeys<Push, ForceLaws>("Push");
+struct Maxwell {
+  static MaxwellElement force() { return {.stiffness = 80.0, .damping = 3.0, .free_length = 0.7}; }
+};
 bool const spring_obeys = obeys<Spring, ForceLaws>("Spring");
+bool const maxwell_obeys = obeys<Maxwell, ForceLaws>("Maxwell");
 
 /// A free mass without tangent and constraint equations.
 struct FreeMass {
@@ -249,7 +253,8 @@ TEST(Laws, ThatDoNotApplyHaveNoTest) {
             laws_of<BodyLaws<Block>>({"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",
                                       "ReferenceStandsWhereTheBarIsPlaced", "PointsOutsideTheBarAreRefused"}));
   EXPECT_EQ(tests_of("Push/ForceLaws"), (Names{"GradientIsTheDerivativeOfTheWrenches", "AsksNoMoreThanItSays"}));
-  EXPECT_EQ(tests_of("Spring/ForceLaws"), laws_of<ForceLaws<Spring>>());
+  EXPECT_EQ(tests_of("Spring/ForceLaws"), laws_of<ForceLaws<Spring>>({"DissipationIsTheLostPower"}));
+  EXPECT_EQ(tests_of("Maxwell/ForceLaws"), laws_of<ForceLaws<Maxwell>>());
   EXPECT_EQ(tests_of("FreeMass/UserSystemLaws"), Names{"MassIsSymmetricAndPositive"});
   EXPECT_EQ(tests_of("PointOnACircle/UserSystemLaws"), laws_of<UserSystemLaws<OnTheCircle>>());
 }
