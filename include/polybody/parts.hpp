@@ -2,6 +2,7 @@
 /// \file
 /// Ready parts of mechanisms: springs on joints, limits, impacts at limits, and drives (servos, motors, belts,
 /// differentials).
+/// Ready parts of mechanisms: springs on joints, limits and impacts at limits, contact shapes.
 
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/differential.hpp>
@@ -9,6 +10,10 @@
 #include <polybody/forces/motors.hpp>
 #include <polybody/forces/scalar_force.hpp>
 #include <polybody/forces/servo.hpp>
+#include <polybody/forces/shapes/box_contact.hpp>
+#include <polybody/forces/shapes/capsule_contact.hpp>
+#include <polybody/forces/shapes/compound.hpp>
+#include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/forces/spring_laws.hpp>
 #include <polybody/run/belt_spans.hpp>
 #include <polybody/run/impact_at_limit.hpp>

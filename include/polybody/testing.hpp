@@ -5,6 +5,7 @@
 
 #include <polybody/testing/body_laws.hpp>
 #include <polybody/testing/contact_laws.hpp>
+#include <polybody/testing/contact_shape_laws.hpp>
 #include <polybody/testing/flexible_body_laws.hpp>
 #include <polybody/testing/force_laws.hpp>
 #include <polybody/testing/integrator_laws.hpp>

@@ -3,6 +3,9 @@
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 #include <polybody/bodies/ffr/ffr_options.hpp>
+#include <polybody/forces/shapes/box_contact.hpp>
+#include <polybody/forces/shapes/capsule_contact.hpp>
+#include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_ground_contact.hpp>
@@ -54,6 +57,27 @@ template <>
 inline constexpr auto words_of<SphereOnSphere> = words("radius of the first", "radius of the second");
 template <>
 inline constexpr auto words_of<SphereOnCylinder> = words("sphere's radius", "cylinder's radius");
+
+// contact shapes
+template <>
+inline constexpr auto words_of<BoxOnPlane> = words("size|rounding", "rounding");
+template <>
+inline constexpr auto words_of<CapsuleOnPlane> = words("radius", "length");
+template <int most>
+inline constexpr auto words_of<PolyhedronOnPlane<most>> = words("corner", "rounding");
+template <>
+inline constexpr auto words_of<CapsuleOnSphere> = words("radius|radii", "length", "radius of the sphere|radii");
+template <>
+inline constexpr auto words_of<CapsuleOnCapsule> = words("radius of the first|radii", "length of the first",
+                                                         "radius of the second|radii", "length of the second", "taper");
+template <>
+inline constexpr auto words_of<SphereOnBox> = words("sphere's radius", "size|rounding", "rounding");
+template <>
+inline constexpr auto words_of<CapsuleOnBox> = words("radius", "length", "size|rounding", "rounding", "taper");
+template <>
+inline constexpr auto words_of<BoxOnBox> =
+    words("size of the first|rounding of the first", "rounding of the first",
+          "size of the second|rounding of the second", "rounding of the second", "taper");
 
 // contacts of vehicles
 template <>

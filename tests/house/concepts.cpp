@@ -21,6 +21,10 @@
 #include <polybody/forces/motors.hpp>
 #include <polybody/forces/normal_force.hpp>
 #include <polybody/forces/servo.hpp>
+#include <polybody/forces/shapes/box_contact.hpp>
+#include <polybody/forces/shapes/capsule_contact.hpp>
+#include <polybody/forces/shapes/compound.hpp>
+#include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
@@ -57,6 +61,10 @@ static_assert(Body<Rigid<EulerParameters>> && HasOwnEquations<Rigid<EulerParamet
 static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
 static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&
               HasPotential<Contact<SphereOnSphere>>);
+static_assert(ContactGeometry<BoxOnPlane> && ContactGeometry<CapsuleOnPlane> && ContactGeometry<PolyhedronOnPlane<>>);
+static_assert(ContactGeometry<SphereOnBox> && ContactGeometry<CapsuleOnBox> && ContactGeometry<BoxOnBox>);
+static_assert(ContactGeometry<CapsuleOnSphere> && ContactGeometry<CapsuleOnCapsule>);
+static_assert(ContactGeometry<Compound<BoxOnPlane, CapsuleOnPlane>>);
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
 static_assert(ForceElement<BeltAndPulley<2>> && HasStates<BeltAndPulley<2>>);
 static_assert(ForceElement<Differential> && HasStatePotential<Differential>);

@@ -50,7 +50,10 @@ struct SpringDamperContact {
   /// Damper with a given coefficient of restitution e: a body of `mass` [kg] on a spring of `stiffness` [N/m] arrives
   /// with the velocity v and departs with e v. With ζ = c/(2√(km)) = cos θ, the body departs when N = 0, after the
   /// phase 2θ of its damped oscillation, so that e = exp(−2θ cot θ). For ζ = cosh η > 1, e = exp(−2η coth η). [derived;
-  /// Schwager & Pöschel 2007 give equivalent formulas]
+  /// Schwager & Pöschel 2007 give equivalent formulas] The equation is solved to rounding, for all velocities. The
+  /// logarithmic decrement ζ = −ln e/√(π² + ln² e), which lets the contact pull, would yield 0.951, 0.718, 0.550 and
+  /// 0.253 for e = 0.95, 0.7, 0.5 and 0.1. With an `onset` δ that is added to the result, the restitution of slow
+  /// impacts approaches one: 1 − e ≈ (2/3) c v/(k δ) if v √(m/k) is small compared with δ.
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
     require_positive(stiffness, "SpringDamperContact: the stiffness");
     require_positive(mass, "SpringDamperContact: the mass");
@@ -135,6 +138,8 @@ struct HuntCrossleyContact {
   /// e v. The `stiffness` K [N/mⁿ] and the `exponent` n are given. The equation m v dv/dd = −K dⁿ(1 + D v) yields for
   /// any m, K and n
   ///   D v − ln(1 + D v) = −e D v − ln(1 − e D v).
+  /// The equation is solved to rounding. The explicit formula D = 3 (1 − e)/(2 v) of Hunt & Crossley would yield 0.952,
+  /// 0.768, 0.663 and 0.516 for e = 0.95, 0.7, 0.5 and 0.1. At another velocity w the restitution is that of D w.
   static HuntCrossleyContact with_restitution(double stiffness, double exponent, double e, double speed) {
     detail::require_restitution(e, "HuntCrossleyContact");
     require_positive(speed, "HuntCrossleyContact: the speed of the impact");

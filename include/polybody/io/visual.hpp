@@ -128,6 +128,32 @@ Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(),
   return s;
 }
 
+/// Capsule of `radius` [m] about a segment of `length` [m] along `axis`, with its centre at the origin, like the
+/// capsules of contacts. Its section has this number of `sides`, and each end consists of `sides`/4 rings.
+/// \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are at least four sides.
+template <class T = double>  // compiled where it is used
+Surface capsule(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
+  if (sides < 4)
+    throw InvalidInput("capsule.sides", {ErrorObject{"capsule"}, ": a capsule needs at least four sides, but has ",
+                                         ErrorValue{sides}, "."});
+  require_positive(radius, "capsule: the radius");
+  require_positive(length, "capsule: the length");
+  Surface const unit = cylinder<T>(1.0, 1.0, axis, sides);  // one ring of points at each end
+  int const rings = sides / 4;
+  Surface s = swept(2 * rings, sides);
+  for (int k = 0; k < 2 * rings; ++k) {
+    double const side = k < rings ? -1.0 : 1.0;
+    // angle of the ring about the centre of its end, from the axis to π/2 at the segment
+    double const angle = (k < rings ? k + 0.5 : 2 * rings - k - 0.5) / (rings - 0.5) * 0.5 * std::numbers::pi;
+    double const along = side * (0.5 * length + radius * std::cos(angle)), out = radius * std::sin(angle);
+    for (int i = 0; i < sides; ++i) {
+      Vec3 const& point = unit.points[std::size_t(i)];  // at −½ along the axis
+      s.points[std::size_t(sides * k + i)] = (point + 0.5 * axis) * out + along * axis;
+    }
+  }
+  return s;
+}
+
 /// Visible part of a model in one state: a surface, the velocities and axial stresses of its points, and a frame. The
 /// frame of a shape fixed to a marker is the frame of the marker. The frame of a swept bar is the frame at the middle
 /// of the bar.

@@ -85,8 +85,8 @@ double power(System const& system, State const& x, ElementHandle<J> const& joint
 
 /// Contact point in a state.
 struct TouchingPoint {
-  Index body;                  ///< index of the body's marker among the `many()` markers of the group
-  std::string const* against;  ///< name of the partner in the contact
+  Index body;  ///< index of the body's marker among the `many()` markers of the group; 0 for one contact
+  std::string const* against;  ///< name of the partner in the contact; for one contact, its own name
   Vec3 place;                  ///< (3) position, world axes [m]
   Vec3 normal;                 ///< (3) unit vector towards the body
   double depth;                ///< penetration [m]
@@ -106,8 +106,8 @@ void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, 
 }
 }  // namespace detail
 
-/// Calls visit(TouchingPoint) for each contact point of a contact group whose normal force is positive. `system` must
-/// have been evaluated at the state.
+/// Calls visit(TouchingPoint) for each contact point of a contact group, or of one contact, whose normal force is
+/// positive. `system` must have been evaluated at the state.
 /// \throws InvalidInput for a handle of another model.
 template <class F>
 void for_each_contact(System const& system, ElementHandle<F> const& group, TouchingPointVisit const& visit) {
@@ -116,11 +116,16 @@ void for_each_contact(System const& system, ElementHandle<F> const& group, Touch
   auto const frame = [&](Index k) -> Frame<double> const& {
     return system.data().markers[std::size_t(place.markers[std::size_t(k)])].frame;
   };
-  for (Index body = 0; body < contact.many(); ++body)
-    contact.for_each_partner([&](auto const& few) {
-      if (few.law.may_touch(frame(body), frame(few.marker)))
-        detail::visit_touching(few.law, {frame(body), frame(few.marker)}, body, few.name, visit);
-    });
+  if constexpr (ForceElement<F>) {
+    if (contact.may_touch(frame(0), frame(1)))
+      detail::visit_touching(contact, {frame(0), frame(1)}, 0, place.name, visit);
+  } else {
+    for (Index body = 0; body < contact.many(); ++body)
+      contact.for_each_partner([&](auto const& few) {
+        if (few.law.may_touch(frame(body), frame(few.marker)))
+          detail::visit_touching(few.law, {frame(body), frame(few.marker)}, body, few.name, visit);
+      });
+  }
 }
 
 }  // namespace polybody

@@ -273,7 +273,8 @@ class ObservedState {
   double power(ElementHandle<E> const& element) const {
     return polybody::power(probe_->with_forces(*x_), *x_, element);
   }
-  /// Calls visit(TouchingPoint) for every contact point of a contact group with a positive normal force.
+  /// Calls visit(TouchingPoint) for every contact point of a contact group, or of one contact, with a
+  /// positive normal force.
   template <class F>
   void for_each_contact(ElementHandle<F> const& group, TouchingPointVisit const& visit) const {
     polybody::for_each_contact(evaluated(), group, visit);

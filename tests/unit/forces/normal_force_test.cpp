@@ -192,6 +192,40 @@ TEST(HuntCrossleyContact, LosesMoreTheFasterItComes) {
   EXPECT_LT(restitution(law, 1.0, 3.0, 1e-6), 0.6);
 }
 
+// Errors of the explicit formulas that the comments of `with_restitution` state, by integration.
+TEST(NormalForces, ExplicitFormulasForTheRestitutionHaveTheStatedErrors) {
+  double const k = 1e4, m = 1.0, speed = 1.0, step = 1e-6;
+  struct Stated {
+    double wanted, decrement, hunt_crossley;
+  };
+  for (Stated const& s :
+       {Stated{0.95, 0.951, 0.952}, Stated{0.7, 0.718, 0.768}, Stated{0.5, 0.550, 0.663}, Stated{0.1, 0.253, 0.516}}) {
+    double const e = s.wanted, zeta = -std::log(e) / std::hypot(std::numbers::pi, std::log(e));
+    SpringDamperContact const spring{.stiffness = k, .damping = 2.0 * zeta * std::sqrt(k * m)};
+    EXPECT_NEAR(restitution(spring, m, speed, step), s.decrement, 6e-4);
+    HuntCrossleyContact const power{.stiffness = k, .damping = 1.5 * (1.0 - e) / speed};
+    EXPECT_NEAR(restitution(power, m, speed, step), s.hunt_crossley, 6e-4);
+  }
+}
+
+// Within the onset δ, the damper takes ∫ (c/δ) d ḋ² dt = (2/3) (c/δ) v³ m/k of ½ m v² in an impact of the velocity v,
+// so that 1 − e = (2/3) c v/(k δ) to the first order. An impact far beyond the onset has the restitution without it.
+TEST(SpringDamperContact, OnsetRaisesTheRestitutionOfSlowImpacts) {
+  double const k = 1e4, m = 1.0, onset = 1e-3;
+  SpringDamperContact law = SpringDamperContact::with_restitution(k, m, 0.5);
+  law.onset = onset;
+  double before = 1.0;
+  for (double const speed : {1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0}) {
+    double const e = restitution(law, m, speed, 1e-6), first_order = 2.0 / 3.0 * law.damping * speed / (k * onset);
+    EXPECT_LT(e, before) << speed;
+    if (speed < 0.01) {
+      EXPECT_NEAR(1.0 - e, first_order, 3.0 * first_order * first_order) << speed;
+    }
+    before = e;
+  }
+  EXPECT_NEAR(before, 0.5, 0.01);
+}
+
 // --- bad input ------------------------------------------------------------------------------------------------
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();

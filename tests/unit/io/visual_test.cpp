@@ -60,11 +60,23 @@ TEST(Surface, ShapesAreClosedAndHoldTheirVolume) {
   for (Vec3 const& p : c.points) EXPECT_NEAR(std::abs(p.dot(Vec3(0.6, 0, 0.8))), 1.0, 1e-14);
   EXPECT_EQ(outline(round, 7).size(), 7u);
 }
+TEST(Surface, CapsuleIsClosedAndRound) {
+  Vec3 const axis(0.6, 0, 0.8);
+  Surface const s = capsule(0.3, 2.0, axis, 48);
+  expect_closed(s);
+  double const volume_of_capsule = pi * 0.09 * 2.0 + 4.0 / 3.0 * pi * 0.027;
+  EXPECT_NEAR(volume(s), volume_of_capsule, 0.01 * volume_of_capsule);
+  for (Vec3 const& p : s.points) EXPECT_NEAR((p - std::clamp(p.dot(axis), -1.0, 1.0) * axis).norm(), 0.3, 0.003);
+}
 
 TEST(Surface, RefusesWhatHasNoShape) {
   expect_refused([] { box({1, 0, 1}); }, {"box", "size"});
   expect_refused([] { cylinder(-1.0, 1.0); }, {"cylinder", "radius"});
   expect_refused([] { cylinder(1.0, 1.0, Vec3(1, 1, 0)); }, {"cylinder", "axis"});
+  expect_refused([] { capsule(0.0, 1.0); }, {"capsule", "radius"});
+  expect_refused([] { capsule(1.0, 0.0); }, {"capsule", "length"});
+  expect_refused([] { capsule(1.0, 1.0, Vec3(1, 1, 0)); }, {"axis"});
+  expect_refused([] { capsule(1.0, 1.0, Vec3::UnitX(), 3); }, {"capsule", "four sides", "3"});
   expect_refused([] { outline({.length = 1.0, .section = Circle{.radius = 1.0}}, 2); }, {"three sides"});
   expect_refused(
       [] { outline({.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}); },
