@@ -66,7 +66,10 @@ TEST(MagicFormula, AgreesWithPublishedCoefficients) {
   double const side = 1078.0 * std::sin(1.82 * std::atan(0.208 * f)), side_peak = -22.1 * f * f + 1011.0 * f;
   check("lateral force [N] at a slip angle [°]",
         {.B = side / (1.3 * side_peak), .C = 1.3, .D = side_peak, .E = -0.354 * f + 0.707},
-        {{0.5, 511.43296366593}, {2.0, 1911.0598390579}, {5.0, 3389.6009850925}, {20.0, 3557.9247422029},
+        {{0.5, 511.43296366593},
+         {2.0, 1911.0598390579},
+         {5.0, 3389.6009850925},
+         {20.0, 3557.9247422029},
          {-5.0, -3389.6009850925}});
   double const along = (49.6 * f * f + 226.0 * f) * std::exp(-0.069 * f), peak = -21.3 * f * f + 1144.0 * f;
   check("brake force [N] at a slip [%]",
@@ -117,20 +120,30 @@ TEST(TyreLaws, RefuseInvalidParameters) {
     change(law);
     EXPECT_TRUE(has(refusal([&] { law.check("tyre"); }), sentence));
   };
-  refused(linear, [](LinearTyre& t) { t.longitudinal_stiffness = 0.0; },
-          "tyre: the longitudinal stiffness of the tyre must be positive and finite, but is 0");
-  refused(linear, [](LinearTyre& t) { t.cornering_stiffness = -1.0; }, "the cornering stiffness of the tyre must be pos");
-  refused(linear, [](LinearTyre& t) { t.longitudinal_friction = 0.0; }, "the longitudinal friction of the tyre must be");
-  refused(linear, [&](LinearTyre& t) { t.lateral_friction = nan; }, "the lateral friction of the tyre must be positive");
+  refused(
+      linear, [](LinearTyre& t) { t.longitudinal_stiffness = 0.0; },
+      "tyre: the longitudinal stiffness of the tyre must be positive and finite, but is 0");
+  refused(
+      linear, [](LinearTyre& t) { t.cornering_stiffness = -1.0; }, "the cornering stiffness of the tyre must be pos");
+  refused(
+      linear, [](LinearTyre& t) { t.longitudinal_friction = 0.0; }, "the longitudinal friction of the tyre must be");
+  refused(
+      linear, [&](LinearTyre& t) { t.lateral_friction = nan; }, "the lateral friction of the tyre must be positive");
   refused(linear, [](LinearTyre& t) { t.camber_stiffness = -2.0; }, "the camber stiffness of the tyre must be zero or");
   refused(linear, [&](LinearTyre& t) { t.trail = nan; }, "the trail of the tyre must be finite");
-  refused(magic, [](MagicFormula& t) { t.longitudinal.value.B = 0.0; }, "the stiffness factor B of the longitudinal curve");
+  refused(
+      magic, [](MagicFormula& t) { t.longitudinal.value.B = 0.0; }, "the stiffness factor B of the longitudinal curve");
   refused(magic, [](MagicFormula& t) { t.lateral.value.C = -1.3; }, "the shape factor C of the lateral curve must be");
-  refused(magic, [](MagicFormula& t) { t.lateral.value.D = -1.0; }, "the peak factor D of the lateral curve must be positive");
-  refused(magic, [&](MagicFormula& t) { t.aligning.D = nan; }, "the peak factor D of the aligning curve must be finite");
-  refused(magic, [](MagicFormula& t) { t.aligning.E = 1.5; },
-          "the curvature factor E of the aligning curve must be at most 1, but is 1.5");
-  refused(magic, [](MagicFormula& t) { t.camber_factor = -0.1; }, "the camber factor of the tyre must be zero or positive");
+  refused(
+      magic, [](MagicFormula& t) { t.lateral.value.D = -1.0; },
+      "the peak factor D of the lateral curve must be positive");
+  refused(
+      magic, [&](MagicFormula& t) { t.aligning.D = nan; }, "the peak factor D of the aligning curve must be finite");
+  refused(
+      magic, [](MagicFormula& t) { t.aligning.E = 1.5; },
+      "the curvature factor E of the aligning curve must be at most 1, but is 1.5");
+  refused(
+      magic, [](MagicFormula& t) { t.camber_factor = -0.1; }, "the camber factor of the tyre must be zero or positive");
 }
 
 }  // namespace polybody::tyre_test

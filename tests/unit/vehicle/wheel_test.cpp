@@ -245,7 +245,8 @@ struct WheelCase {
     f[1].A = exp_so3<double>(number.vec<3>(0.4));
     Vec3 const up = f[1].A.col(2);
     f[0].A = f[1].A * exp_so3<double>(Vec3(0.2 * number(), number(), 2.0 * number()));
-    f[0].r = f[1].r + f[1].A * Vec3(0.4 * number(), 0.4 * number(), 0.33 + (std::is_same_v<G, BumpCourse> ? 0.15 : 0.0));
+    f[0].r =
+        f[1].r + f[1].A * Vec3(0.4 * number(), 0.4 * number(), 0.33 + (std::is_same_v<G, BumpCourse> ? 0.15 : 0.0));
     f[0].v += 6.0 * f[1].A.col(0) - 0.3 * up;
     f[0].w += 18.0 * f[0].A.col(1);
     return f;
@@ -257,13 +258,20 @@ struct WheelCase {
       else
         return G{};
     }());
-    Wheel<L, G> out{.radius = w.radius, .crown = w.crown, .axle = w.axle, .normal = w.normal, .tyre = [] {
-                      if constexpr (std::is_same_v<L, LinearTyre>)
-                        return grip;
-                      else
-                        return magic;
-                    }(),
-                    .relaxation = w.relaxation, .rolling = w.rolling, .terrain = w.terrain};
+    Wheel<L, G> out{.radius = w.radius,
+                    .crown = w.crown,
+                    .axle = w.axle,
+                    .normal = w.normal,
+                    .tyre =
+                        [] {
+                          if constexpr (std::is_same_v<L, LinearTyre>)
+                            return grip;
+                          else
+                            return magic;
+                        }(),
+                    .relaxation = w.relaxation,
+                    .rolling = w.rolling,
+                    .terrain = w.terrain};
     return out;
   }
   static States states(Numbers&) { return {}; }
