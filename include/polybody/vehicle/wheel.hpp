@@ -11,19 +11,20 @@ namespace polybody {
 
 /// Relaxation of a tyre: the deflection u of its contact patch follows the slip velocity V_s over a relaxation length
 /// σ,
-///   u̇ = −V_s − |V_x| u/σ,
-/// and the tyre law applies at the slip u/σ [Pacejka 2012, §7.2]. In steady motion u/σ is the slip −V_s/|V_x|. At
-/// standstill the tyre is a spring with the stiffness C/σ, so that a parked vehicle does not creep.
-/// A bound S on the slip |u/σ| avoids deflections that no tyre has: near the bound, |V_s| gate/S is added to |V_x|. The
-/// gate increases from 0 at 0.9 S to 1 at S. At low speed S is `parked_slip`; at high speed S is 2:
-///   S = S₀ + (2 − S₀) V²/(V² + V₀²),  V² = V_x² + V_s².
+///   u̇ = −V_s − V_t u/σ,
+/// and the tyre law applies at the slip u/σ [Pacejka 2012, §7.2]. V_t is |V_x|, so that u/σ is the slip −V_s/|V_x| in
+/// steady motion. At low speed, V_t is the rolling speed |V_x − V_sx|, which is zero for a locked wheel. A parked wheel
+/// is then a spring with the stiffness C/σ and does not creep, also under oscillating loads:
+///   V_t = (1 − p) |V_x| + p |V_x − V_sx|,  p = V₀²/(V² + V₀²),  V² = V_x² + V_s².
+/// Near a bound S of the slip |u/σ|, V_t also contains |V_s| gate/S, and the gate increases from 0 at 0.9 S to 1 at S.
+/// The bound S = 2 (1 − p) + p S₀ avoids deflections that no tyre has. It is S₀ at standstill and 2 at high speed.
 struct TyreRelaxation {
   Required<double> longitudinal;  ///< relaxation length σ_x [m]
   Required<double> lateral;       ///< relaxation length σ_y [m]
   /// Time τ [s] of the material damping: the tyre law applies at the slip (u + τ u̇)/σ. This damps the oscillations of a
   /// parked vehicle and does not change the steady forces.
   double damping_time = 0.0;
-  double parked_slip = 0.2;  ///< S₀ [1], in (0, 2]; it exceeds the slip at which the force of the tyre is largest
+  double parked_slip = 0.2;  ///< S₀ [1], in (0, 2]; 0.9 S₀ exceeds the slip at which the force of the tyre is largest
   double low_speed = 1.0;    ///< V₀ [m/s]
 
   void check(std::string const& name) const {
@@ -42,15 +43,21 @@ struct TyreRelaxation {
     using std::sqrt;
     T const along = u[0] / longitudinal.value, across = u[1] / lateral.value;
     T const slipping = sx * sx + sy * sy, speed = vx * vx + slipping, slip = along * along + across * across;
-    T bound = T(parked_slip);
-    if (value_of(speed) > 0.0) bound += speed / (speed + low_speed * low_speed) * (2.0 - parked_slip);
-    T transport = value_of(vx) < 0.0 ? T(-vx) : vx;
+    T const fast = value_of(speed) > 0.0 ? T(speed / (speed + low_speed * low_speed)) : T(0.0);
+    T const bound = fast * (2.0 - parked_slip) + parked_slip, rolling = magnitude<T>(vx - sx);
+    T transport = rolling + fast * (magnitude<T>(vx) - rolling);
     if (value_of(slip) > 0.81 * value_of(bound) * value_of(bound) && value_of(slipping) > 0.0) {
       T const part = sqrt(slip) / bound * 10.0 - 9.0;
       T const gate = value_of(part) < 1.0 ? T(part * part * (part * -2.0 + 3.0)) : T(1.0);
       transport += gate * sqrt(slipping) / bound;
     }
     return {-sx - transport * along, -sy - transport * across};
+  }
+
+ private:
+  template <StateScalar T>
+  static T magnitude(T const& x) {
+    return value_of(x) < 0.0 ? T(-x) : x;
   }
 };
 

@@ -120,6 +120,7 @@ TEST(WheelContact, FlatWheelIsFinite) {
 TEST(Wheel, SignsOfTheForces) {
   auto w = wheel();
   w.rolling = {};
+  w.relaxation.low_speed = 1e-6;
   Frames f = at({0.0, 0.0, 0.34});
   f[0].v = Vec3(10.0, 0.0, 0.0);
   f[0].w = Vec3(0.0, 10.0 / 0.34, 0.0);
@@ -182,30 +183,39 @@ TEST(Wheel, TouchesDownWithoutAJump) {
 // The deflection of a sliding wheel is bounded: by the parked slip at low speed, by 2 at high speed.
 TEST(TyreRelaxation, BoundsTheDeflection) {
   TyreRelaxation const tyre{.longitudinal = 0.3, .lateral = 0.3, .parked_slip = 0.15, .low_speed = 1.0};
-  auto const after = [&](double speed, double distance) {
+  auto const after = [&](double speed, double along, double across) {
     States u{};
-    double const step = 1e-4 * distance / speed;
-    for (int k = 0; k < 10000; ++k) {
-      auto const rate = tyre.rates<double>(u, 0.0, 0.6 * speed, 0.8 * speed);
+    double const step = 5e-4 / speed;
+    for (int k = 0; k < 10000; ++k) {  // 5 m; the wheel does not rotate
+      auto const rate = tyre.rates<double>(u, along * speed, along * speed, across * speed);
       for (std::size_t i = 0; i < 2; ++i) u[i] += step * rate[i];
     }
-    EXPECT_NEAR(u[0] / u[1], 0.75, 1e-12);
+    EXPECT_NEAR(u[0] * across, u[1] * along, 1e-12);  // opposite to the slip velocity
     return std::hypot(u[0], u[1]) / 0.3;
   };
-  EXPECT_NEAR(after(1e-3, 5.0), 0.15, 1e-5);
-  EXPECT_NEAR(after(1e3, 5.0), 2.0, 1e-5);
-  EXPECT_NEAR(after(1.0, 5.0), 0.15 + 1.85 * 0.5, 1e-5);
+  EXPECT_NEAR(after(1e-3, 0.6, 0.8), 0.15, 1e-5);
+  EXPECT_NEAR(after(1e3, 0.0, 1.0), 2.0, 1e-5);
+  EXPECT_NEAR(after(1.0, 0.0, 1.0), 0.5 * (2.0 + 0.15), 1e-5);
+  EXPECT_NEAR(after(1e3, 1.0, 0.0), 1.0, 1e-5);  // κ = −1 of a locked wheel
 }
 
-// Without the bound the slip follows κ = −V_sx/V_x over the distance σ: κ (1 − e^{−x/σ}).
+// A locked wheel at low speed is a spring, u = −x, also under motions that oscillate.
+TEST(TyreRelaxation, LockedWheelIsASpringAtLowSpeed) {
+  TyreRelaxation const tyre{.longitudinal = 0.3, .lateral = 0.3};
+  auto const rate = tyre.rates<double>({0.03, -0.02}, 1e-6, 1e-6, 2e-6);
+  EXPECT_NEAR(rate[0], -1e-6, 1e-17);
+  EXPECT_NEAR(rate[1], -2e-6, 1e-17);
+}
+
+// Without the low speed the slip follows κ = −V_sx/V_x over the distance σ: κ (1 − e^{−x/σ}).
 TEST(TyreRelaxation, FollowsTheSlipOverItsLength) {
-  TyreRelaxation const tyre{.longitudinal = 0.3, .lateral = 0.6};
+  TyreRelaxation const tyre{.longitudinal = 0.3, .lateral = 0.6, .low_speed = 1e-6};
   States u{};
   double const v = 20.0, h = 1e-6;
   int const n = 30000;  // 0.6 m
   for (int k = 0; k < n; ++k) {
-    States const middle = tyre.rates<double>(u, v, -0.02 * v, 0.01 * v);
-    States const half{u[0] + 0.5 * h * middle[0], u[1] + 0.5 * h * middle[1]};
+    States const first = tyre.rates<double>(u, v, -0.02 * v, 0.01 * v);
+    States const half{u[0] + 0.5 * h * first[0], u[1] + 0.5 * h * first[1]};
     auto const rate = tyre.rates<double>(half, v, -0.02 * v, 0.01 * v);
     for (std::size_t i = 0; i < 2; ++i) u[i] += h * rate[i];
   }
