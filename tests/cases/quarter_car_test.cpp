@@ -66,7 +66,7 @@ struct QuarterCar {
                                      .lateral_friction = 1.0},
                             .relaxation = {.longitudinal = 0.2, .lateral = 0.2, .damping_time = 2e-3},
                             .terrain = road()},
-                       at(wheel), model.ground().at(Placement{Vec3::Zero(), upright.transpose()}), "tyre");
+                       at(wheel), model.ground().at(Placement{Vec3::Zero(), upright}), "tyre");
     x = model.reference_state();
     double const v = given.speed;
     for (auto const& part : {carriage, body, hub}) model.set_velocity(x, part, {v, 0, 0}, Vec3::Zero());

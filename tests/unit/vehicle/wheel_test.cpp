@@ -223,30 +223,6 @@ TEST(TyreRelaxation, FollowsTheSlipOverItsLength) {
   EXPECT_NEAR(u[1] / 0.6, -0.01 * (1.0 - std::exp(-1.0)), 1e-10);
 }
 
-// Energy: the power of the wrenches equals −dU/dt minus a dissipation, which `dissipation` and the rest of the wrenches
-// at zero velocity contain.
-TEST(Wheel, DissipationIsThePowerOfTheTyreForces) {
-  auto w = wheel(0.08, bumps);
-  Frames f = at({0.2, 0.1, 0.52}, {0.1, 0.2, 0.3});
-  f[0].v = Vec3(5.0, 0.3, -0.2);
-  f[0].w = Vec3(0.1, 16.0, 0.2);
-  States const u{0.002, -0.005};
-  double power = 0.0, at_rest = 0.0;
-  Frames still = f;
-  still[0].v = still[0].w = Vec3::Zero();
-  auto const now = w.wrenches<double>(f, u, 0.0), rest = w.wrenches<double>(still, u, 0.0);
-  power = now[0].f.dot(f[0].v) + now[0].m.dot(f[0].w);
-  at_rest = rest[0].f.dot(f[0].v) + rest[0].m.dot(f[0].w);
-  double const stored = slope_at_zero([&](double h) {
-    Frames near = f;
-    near[0] = later(near[0], h);
-    return w.potential(near, u, 0.0);
-  });
-  double const dissipated = at_rest - power + w.dissipation(f, u, 0.0);
-  EXPECT_GT(std::abs(stored), 1.0);
-  EXPECT_NEAR(power + stored + dissipated, 0.0, 1e-6 * std::abs(power));
-}
-
 // Frames of a wheel on the ground, both moving, and states beyond and below saturation.
 template <class G, class L>
 struct WheelCase {
