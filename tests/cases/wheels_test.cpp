@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 
@@ -25,7 +27,8 @@ Tyre tyre(double radius, double stiffness, double friction) {
           .relaxation = {.longitudinal = 0.2, .lateral = 0.2, .low_speed = 1e-3}};
 }
 
-// A wheel in the plane slides at first and rolls at last. J ω + m r v is constant, so that v = m r² v₀/(m r² + J) = ω r.
+// A wheel in the plane slides at first and rolls at last. J ω + m r v is constant, so that v = m r² v₀/(m r² + J) = ω
+// r.
 TEST(Tyre, FreeWheelRollsWithoutSlipAtLast) {
   double const m = 20.0, j = 0.8, r0 = 0.3, r = r0 - m * g / 2e5, v0 = 8.0;
   Model<Bodies<planar::Rigid>, Joints<>, Forces<Tyre>> model{Gravity{0, -g, 0}};
@@ -43,9 +46,10 @@ TEST(Tyre, FreeWheelRollsWithoutSlipAtLast) {
   Frame<double> const f = frame(model, x, wheel.at(Vec2(0, 0)));
   double const v = m * r * r * v0 / (m * r * r + j);
   char const* const how = "J ω + m r v is constant, v = ω r";
-  held({"Wheel", "speed of a wheel that slid at first [m/s]", By::closed_form, how, "planar Rigid, h = 1e-3 s"}, f.v[0], v,
-       1e-6);
-  held({"Wheel", "angular velocity of a wheel that slid at first [rad/s]", By::closed_form, how, "planar Rigid, h = 1e-3 s"},
+  held({"Wheel", "speed of a wheel that slid at first [m/s]", By::closed_form, how, "planar Rigid, h = 1e-3 s"}, f.v[0],
+       v, 1e-6);
+  held({"Wheel", "angular velocity of a wheel that slid at first [rad/s]", By::closed_form, how,
+        "planar Rigid, h = 1e-3 s"},
        -f.w[2], v / r, 1e-5);
   EXPECT_NEAR(audit.dissipated(), 0.5 * m * v0 * v0 - 0.5 * (m + j / (r * r)) * v * v, 0.02);
   EXPECT_LT(audit.relative(), 1e-5);
@@ -84,8 +88,8 @@ TEST(Tyre, BrakingDistanceOfALockedWheel) {
        farthest, x1 + (0.5 * m * v0 * v0 - first) / most, 2e-5);
 }
 
-// A locked wheel on a slope of 0.2 rad, diagonal to the wheel. After 10 s the tyre's deflection carries the pull, and the
-// wheel rests for a minute. The deflection is F σ/C.
+// A locked wheel on a slope of 0.2 rad, diagonal to the wheel. After 10 s the tyre's deflection carries the pull, and
+// the wheel rests for a minute. The deflection is F σ/C.
 TEST(Tyre, ParkedWheelRestsOnASlope) {
   double const m = 300.0, alpha = 0.2, c = 5e4, pull = g * std::sin(alpha);
   Tyre law = tyre(0.3, c, 0.8);
@@ -95,7 +99,8 @@ TEST(Tyre, ParkedWheelRestsOnASlope) {
   LockedWheel car({0.8 * pull, -0.6 * pull, -g * std::cos(alpha)}, law, m);
   Vec3 settled = Vec3::Zero();
   double moved = 0.0;
-  for (State const& now : simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 70.0, .step = 5e-3})) {
+  for (State const& now :
+       simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 70.0, .step = 5e-3})) {
     if (now.t < 10.0)
       settled = car.position(now);
     else
@@ -160,7 +165,8 @@ struct SingleTrack {
     for (int i = 0; i < 2; ++i) {
       double const place = i == 0 ? a : -b, angle = i == 0 ? steer : 0.0, load = m * g * (i == 0 ? b : a) / (a + b);
       Vec3 const axle(-std::sin(angle), std::cos(angle), 0.0), centre(place, 0.0, r);
-      auto const wheel = model.add(Rigid<>(1e-3, 1e-3 * Mat3::Identity(), Placement::at(centre)), i == 0 ? "front" : "rear");
+      auto const wheel =
+          model.add(Rigid<>(1e-3, 1e-3 * Mat3::Identity(), Placement::at(centre)), i == 0 ? "front" : "rear");
       model.connect(Axle{{.axis = axle}, {}}, car.at(Vec3(place, 0.0, r - 0.5)), wheel.at({0, 0, 0}));
       Tyre law = tyre(r + load / 2e5, stiffness[i], 1.0);  // the depth gives the static load
       law.axle = axle;
@@ -176,8 +182,8 @@ struct SingleTrack {
   double understeer() const { return m * (b * rear - a * front) / ((a + b) * front * rear); }
 };
 
-// r = V δ/(L + K V²), K = m (b C_r − a C_f)/(L C_f C_r): understeering, neutral and oversteering car. Terms of the order
-// δ² are neglected.
+// r = V δ/(L + K V²), K = m (b C_r − a C_f)/(L C_f C_r): understeering, neutral and oversteering car. Terms of the
+// order δ² are neglected.
 TEST(SingleTrack, SteadyCircle) {
   double const steer = 0.004;
   struct Case {
@@ -199,7 +205,8 @@ TEST(SingleTrack, SteadyCircle) {
 }
 
 /// Largest real part of the eigenvalues of the linear single-track model with relaxation: v, r, u_f, u_r with
-///   m (v̇ + V r) = F_f + F_r,  I ṙ = a F_f − b F_r,  F = C u/σ,  u̇_f = −(v + a r) − V u_f/σ,  u̇_r = −(v − b r) − V u_r/σ.
+///   m (v̇ + V r) = F_f + F_r,  I ṙ = a F_f − b F_r,  F = C u/σ,  u̇_f = −(v + a r) − V u_f/σ,  u̇_r = −(v − b r) − V
+///   u_r/σ.
 double growth(SingleTrack const& car, double v) {
   double const sigma = 0.2, f = car.front / sigma, r = car.rear / sigma;
   Mat<double, 4, 4> const s{{0.0, -v, f / car.m, r / car.m},
@@ -225,13 +232,14 @@ TEST(SingleTrack, CriticalSpeedOfAnOversteeringCar) {
     }();
     make_consistent(car.model, car.x);
     double early = 0.0, late = 0.0;
-    for (State const& now : simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 4.0, .step = 2e-3})) {
+    for (State const& now :
+         simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 4.0, .step = 2e-3})) {
       double const rate = frame(car.model, now, car.car.at({0, 0, 0})).w[2];
       if (std::abs(now.t - 2.0) < 1e-6) early = rate;
       late = rate;
     }
-    held({"Single track", "growth of the yaw rate [1/s]", By::closed_form, "eigenvalue of the linear single-track model",
-          "Rigid, Wheel<LinearTyre>, h = 2e-3 s"},
+    held({"Single track", "growth of the yaw rate [1/s]", By::closed_form,
+          "eigenvalue of the linear single-track model", "Rigid, Wheel<LinearTyre>, h = 2e-3 s"},
          0.5 * std::log(late / early), growth(car, speed), 5e-4, {equals("V/V_c", part), 0.3});
   }
 }

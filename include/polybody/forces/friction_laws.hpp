@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Dry friction along one coordinate of a joint: regularised, by a bristle after LuGre, and by an elasto-plastic bristle.
-/// The laws are `ScalarLaw`s for `OnAngle`, `OnTurns` and `OnTranslation`; the force on b opposes the rate ẋ.
+/// Dry friction along one coordinate of a joint: regularised, by a bristle after LuGre, and by an elasto-plastic
+/// bristle. The laws are `ScalarLaw`s for `OnAngle`, `OnTurns` and `OnTranslation`; the force on b opposes the rate ẋ.
 
 #include <polybody/forces/scalar_force.hpp>
 
@@ -10,10 +10,10 @@ namespace polybody {
 /// Friction in steady sliding at the speed v, Coulomb friction with a Stribeck curve [Armstrong-Hélouvry, Dupont &
 /// Canudas de Wit 1994]: g(v) = F_c + (F_s − F_c) exp(−(v/v_s)²), and the viscous friction c v.
 struct FrictionCurve {
-  Required<double> sliding;      ///< F_c [N] or [N m], friction at high speed
-  double break_away = 0.0;       ///< F_s ≥ F_c [N] or [N m], friction at the speed zero; 0 for F_s = F_c
-  double stribeck_speed = 0.0;   ///< v_s [m/s] or [rad/s]; must be positive if F_s is not zero
-  double viscous = 0.0;          ///< c [N s/m] or [N m s/rad]
+  Required<double> sliding;     ///< F_c [N] or [N m], friction at high speed
+  double break_away = 0.0;      ///< F_s ≥ F_c [N] or [N m], friction at the speed zero; 0 for F_s = F_c
+  double stribeck_speed = 0.0;  ///< v_s [m/s] or [rad/s]; must be positive if F_s is not zero
+  double viscous = 0.0;         ///< c [N s/m] or [N m s/rad]
 
   void check(std::string const& name, ScalarUnits const& units) const {
     ScalarUnits::require_not_negative(sliding, units.force, name, ": the sliding friction");
@@ -35,7 +35,8 @@ struct FrictionCurve {
   }
 };
 
-/// Regularised dry friction Q = −g(v) v/√(v² + v_0²) − c v. It creeps under a constant load, with v of the order of v_0.
+/// Regularised dry friction Q = −g(v) v/√(v² + v_0²) − c v. It creeps under a constant load, with v of the order of
+/// v_0.
 struct DryFriction {
   FrictionCurve curve;          ///< friction in steady sliding
   Required<double> slip_speed;  ///< v_0 [m/s] or [rad/s]

@@ -23,8 +23,9 @@ T force_of_stops(double lower, double upper, N const& stop, T const& x, T const&
     throw InvalidInput("limit.order", {ErrorObject{name}, ": the lower limit must be less than the upper limit of ",
                                        upper, " ", unit.x, ", but is ", ErrorValue{lower}, " ", unit.x, "."});
   if (!std::isfinite(lower) && !std::isfinite(upper))
-    throw InvalidInput("limit.missing", {ErrorObject{name}, ": the lower limit or the upper limit must be finite, but "
-                                                            "they are ",
+    throw InvalidInput("limit.missing", {ErrorObject{name},
+                                         ": the lower limit or the upper limit must be finite, but "
+                                         "they are ",
                                          ErrorValue{lower}, " and ", upper, " ", unit.x, "."});
   for (double const limit : {lower, upper})
     if (std::isfinite(limit) && !(std::abs(limit) < unit.largest))
