@@ -3,6 +3,7 @@
 /// Ready parts of mechanisms: springs on joints, limits, impacts at limits, and drives (servos, motors, belts,
 /// differentials).
 /// Ready parts of mechanisms: springs on joints, limits and impacts at limits, contact shapes.
+/// Ready parts of mechanisms: springs on joints, limits and impacts at limits, tyre laws and wheels.
 
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/differential.hpp>
@@ -16,4 +17,6 @@
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/forces/spring_laws.hpp>
 #include <polybody/run/belt_spans.hpp>
+#include <polybody/forces/tyre.hpp>
 #include <polybody/run/impact_at_limit.hpp>
+#include <polybody/vehicle/wheel.hpp>

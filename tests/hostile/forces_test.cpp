@@ -17,6 +17,8 @@ using OnWaves = Contact<LinkGroundContact<Washboard>>;
 using OnRoller = Contact<LinkRollerContact<>>;
 using OnRims = Contact<GuideHornContact<>>;
 using OnSprocket = Contact<PinSprocketContact<>>;
+using LinearWheel = Wheel<LinearTyre>;
+using MagicWheel = Wheel<MagicFormula, Washboard>;
 
 template <class G>
 using Held = Joint<G, Constraint>;
@@ -32,7 +34,7 @@ using Mechanism =
                  Pin<PenaltyPerEquation<5>>, Pin<Bushing>, Pin<Laws>>,
           Forces<SpringDamper, MaxwellElement, AxialSpring, PointForce<>, PointForce<Ramp>, PointForce<Window>,
                  PointMoment<SmoothRamp>, PointMoment<SpinUp>, OnPlane, OnSphere, OnCylinder, OnGround, OnWaves,
-                 OnRoller, OnRims, OnSprocket>>;
+                 OnRoller, OnRims, OnSprocket, LinearWheel, MagicWheel>>;
 
 SpringDamperContact const pads{.stiffness = 1e4, .damping = 10.0, .onset = 1e-3};
 Friction const rough{.coefficient = 0.3, .slip_speed = 0.01};
@@ -104,6 +106,35 @@ TEST(HostileParameters, OfContacts) {
   profile.check("the sane one");
   tried += try_force(OnSprocket{.geometry = {.profile = profile, .valley = 0.0}, .normal = pads}, "PinSprocketContact");
   std::cout << tried << " parameters of contacts\n";
+}
+
+TEST(HostileParameters, OfWheels) {
+  int tried = 0;
+  TyreRelaxation const relaxation{.longitudinal = 0.2, .lateral = 0.3, .damping_time = 1e-3};
+  tried += try_force(LinearWheel{.radius = 0.5,
+                                 .crown = 0.1,
+                                 .axle = Vec3::UnitY(),
+                                 .normal = pads,
+                                 .tyre = {.longitudinal_stiffness = 1e3,
+                                          .cornering_stiffness = 2e3,
+                                          .longitudinal_friction = 1.0,
+                                          .lateral_friction = 0.9,
+                                          .camber_stiffness = 10.0,
+                                          .trail = 0.03},
+                                 .relaxation = relaxation,
+                                 .rolling = {.coefficient = 0.01, .speed = 0.1}},
+                     "Wheel<LinearTyre>");
+  tried += try_force(MagicWheel{.radius = 0.5,
+                                .axle = Vec3::UnitY(),
+                                .normal = pads,
+                                .tyre = {.longitudinal = MagicCurve{10.0, 1.9, 1.0, 0.97},
+                                         .lateral = MagicCurve{12.0, 1.3, 0.9, -0.7},
+                                         .aligning = {12.0, 2.4, -0.01, -2.6},
+                                         .camber_factor = 0.05},
+                                .relaxation = relaxation,
+                                .terrain = {.amplitude = 0.01, .wavelength = 4.0}},
+                     "Wheel<MagicFormula>");
+  std::cout << tried << " parameters of wheels\n";
 }
 
 /// A joint between the ground and the body, with markers `arm` below and above each other.

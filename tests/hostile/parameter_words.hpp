@@ -6,6 +6,7 @@
 #include <polybody/forces/shapes/box_contact.hpp>
 #include <polybody/forces/shapes/capsule_contact.hpp>
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
+#include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/signals/rainflow.hpp>
 #include <polybody/vehicle/link_ground_contact.hpp>
@@ -97,6 +98,25 @@ inline constexpr auto words_of<SprocketProfile> =
 template <MarkerKind observed>
 inline constexpr auto words_of<PinSprocketContact<observed>> =
     words("profile", "valley", "ring", "position of the pin");
+
+// wheels
+template <>
+inline constexpr auto words_of<LinearTyre> =
+    words("longitudinal stiffness", "cornering stiffness", "longitudinal friction", "lateral friction",
+          "camber stiffness", "trail");
+template <>
+inline constexpr auto words_of<MagicCurve> = words("factor B", "factor C", "factor D", "factor E");
+template <>
+inline constexpr auto words_of<MagicFormula> =
+    words("longitudinal curve", "lateral curve", "aligning curve", "camber factor");
+template <>
+inline constexpr auto words_of<TyreRelaxation> =
+    words("longitudinal relaxation", "lateral relaxation", "damping time", "parked slip", "low speed");
+template <>
+inline constexpr auto words_of<RollingResistance> = words("coefficient|speed of the rolling", "speed");
+template <class L, class G, class N>
+inline constexpr auto words_of<Wheel<L, G, N>> =
+    words("radius", "crown", "axle", "normal", "tyre", "relaxation", "rolling", "terrain");
 
 // joints
 template <>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Dry friction along one coordinate of a joint: regularised, by the bristle of LuGre and by an elasto-plastic bristle.
-/// The laws are `ScalarLaw`s for `OnAngle`, `OnTurns` and `OnTranslation`; the force on b opposes the rate ẋ.
+/// Dry friction along one coordinate of a joint: regularised, by a bristle after LuGre, and by an elasto-plastic
+/// bristle. The laws are `ScalarLaw`s for `OnAngle`, `OnTurns` and `OnTranslation`; the force on b opposes the rate ẋ.
 
 #include <polybody/forces/scalar_force.hpp>
 
