@@ -257,21 +257,36 @@ template <class J, class A, class B>
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
+/// Name of a force, given or generated, after the check of its parameters. \throws InvalidInput for a duplicate name
+/// and for invalid parameters; the message names the force.
+template <class F>
+std::string checked_force_name(ModelParts& parts, Sequence<ForceEntry<F>> const& pool, F const& force,
+                               std::string name) {
+  name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
+  force.check(sentence_of({"\"", name, "\""}));
+  parts.force_names.require_free(name, "force");
+  return name;
+}
+/// Adds a force element on markers of the model.
+template <class F>
+ElementHandle<F> enter_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
+                             std::array<Index, F::markers> const& markers) {
+  pool.push_back({force, markers, name, parts.states, parts.serial()});
+  parts.states += states_of<F>();
+  parts.force_names.take(name);
+  return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
+}
+
 /// Adds a force element on the markers. \throws InvalidInput for a duplicate name and for invalid parameters or
 /// markers; the message names the force.
 template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
-  name = parts.force_names.given_or_next(std::move(name), "force", pool.size());
-  force.check(sentence_of({"\"", name, "\""}));
+  name = checked_force_name(parts, pool, force, std::move(name));
   (require_own(parts, markers, name), ...);
   (require_observed(markers.marker, F::needs, name), ...);
-  parts.force_names.require_free(name, "force");
   parts.origin.change();
-  pool.push_back({force, {publish_at(parts, markers, identity())...}, name, parts.states, parts.serial()});
-  parts.states += states_of<F>();
-  parts.force_names.take(name);
-  return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
+  return enter_force(parts, pool, force, std::move(name), {publish_at(parts, markers, identity())...});
 }
 
 /// Adds a force group with its many markers. \throws InvalidInput for a duplicate name and for invalid parameters or

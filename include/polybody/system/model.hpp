@@ -10,6 +10,7 @@
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/connections.hpp>
+#include <polybody/system/joint_forces.hpp>
 #include <polybody/system/list_refusals.hpp>
 #include <polybody/system/state.hpp>
 
@@ -118,6 +119,19 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         markers);
   }
 
+  /// Applies a force element to the coordinate of a joint, between the markers of the joint. The force acts on the
+  /// second marker in the direction of a growing angle or translation. \throws InvalidInput for a duplicate name, a
+  /// handle of another model, invalid parameters, or a marker of the joint without axes.
+  template <OneOf<Fs...> F, OneOf<Js...> J>
+    requires JointForce<F>
+  ElementHandle<F> apply(F const& force, ElementHandle<J> const& joint, std::string name = "") {
+    constexpr JointMotion::Kind kind = F::Coordinate::motion;
+    detail::require_joint_coordinate<kind, typename J::Geometry>();
+    auto const& e = entry(joint);
+    return detail::add_joint_force(parts_, pool_of<F>(), force, std::move(name), bodies_, {e.a, e.b},
+                                   detail::axis_of_coordinate(e, kind, name));
+  }
+
   /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a
   /// duplicate name, a marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
@@ -139,6 +153,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// of its markers.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
+             !(JointForce<F> && detail::is_joint_handle<First, Js...> && sizeof...(Rest) <= 1) &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
   auto apply(F const&, First const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force_ends<F>();
