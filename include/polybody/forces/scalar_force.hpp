@@ -20,7 +20,8 @@ struct ScalarUnits {
   /// \throws InvalidInput unless `x` is finite and positive; `unit` is its unit. `what` and `part` name the object and
   /// the parameter.
   static void require_positive(double x, char const* unit, std::string_view what, std::string_view part) {
-    if (!(x > 0.0) || !std::isfinite(x)) refuse("value.not_positive", " must be positive and finite", x, unit, what, part);
+    if (!(x > 0.0) || !std::isfinite(x))
+      refuse("value.not_positive", " must be positive and finite", x, unit, what, part);
   }
   /// \throws InvalidInput unless `x` is finite and not negative.
   static void require_not_negative(double x, char const* unit, std::string_view what, std::string_view part) {

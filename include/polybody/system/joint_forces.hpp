@@ -26,9 +26,10 @@ inline constexpr bool is_joint_handle = (std::is_same_v<H, ElementHandle<Js>> ||
 /// Refuses at compile time a joint whose geometry G has no coordinate of this kind.
 template <JointMotion::Kind kind, class G>
 constexpr void require_joint_coordinate() {
-  static_assert(kind != JointMotion::Kind::turn || HasJointAngle<G>,
-                "A force on an angle needs a joint that permits or prescribes exactly one rotation, such as Revolute or "
-                "Cylindrical. Apply it to two markers instead; their angle is about the third axis of the first one.");
+  static_assert(
+      kind != JointMotion::Kind::turn || HasJointAngle<G>,
+      "A force on an angle needs a joint that permits or prescribes exactly one rotation, such as Revolute or "
+      "Cylindrical. Apply it to two markers instead; their angle is about the third axis of the first one.");
   static_assert(kind != JointMotion::Kind::slide || HasJointTranslation<G>,
                 "A force on a translation needs a joint that permits or prescribes exactly one translation, such as "
                 "Prismatic or Cylindrical. Apply it to two markers instead; their translation is along the third axis "

@@ -28,13 +28,15 @@ Inertia const turned_part = [] {
 
 // A rotation about a fixed axis leaves this axis in place, and the yaw is the last rotation.
 TEST(Inertia, RollPitchYawRotateAboutFixedAxes) {
-  Mat3 const turned = exp_so3<double>(Vec3(0, 0, 0.5)) * exp_so3<double>(Vec3(0, -0.4, 0)) * exp_so3<double>(Vec3(0.3, 0, 0));
+  Mat3 const turned =
+      exp_so3<double>(Vec3(0, 0, 0.5)) * exp_so3<double>(Vec3(0, -0.4, 0)) * exp_so3<double>(Vec3(0.3, 0, 0));
   EXPECT_LT((roll_pitch_yaw(0.3, -0.4, 0.5) - turned).norm(), 1e-15);
 }
 
 // R diag(1, 2, 2.5) Rᵀ with 90° about z exchanges the first two moments: 2 N m for 1 rad/s² about x  [case 6 (a)].
 TEST(Inertia, TurnedAxesOfAFreeBody) {
-  Inertia const part = Inertia{.mass = 1.0, .tensor = diagonal(1, 2, 2.5)}.placed({Vec3::Zero(), roll_pitch_yaw(0, 0, pi / 2)});
+  Inertia const part =
+      Inertia{.mass = 1.0, .tensor = diagonal(1, 2, 2.5)}.placed({Vec3::Zero(), roll_pitch_yaw(0, 0, pi / 2)});
   Model<Bodies<Rigid<>>, Joints<>, Forces<PointMoment<>>> model;
   auto const body = model.add(Rigid<>(part.body()), "body");
   model.apply(PointMoment<>{.moment = {2.0, 0.0, 0.0}}, body.centre(), "torque");
@@ -62,7 +64,8 @@ TEST(Inertia, SmallSwingsOfALink) {
   double const hanging = -0.5 * pi - std::atan2(0.20, -0.12), angle = 0.3;
   Model<Bodies<Rigid<>>, Joints<Hinge>> model{Gravity{0, 0, -9.81}};
   auto const body = model.add(Rigid<>(turned_part.body({Vec3::Zero(), roll_pitch_yaw(hanging + angle, 0, 0)})), "link");
-  model.connect(Hinge{Revolute{.axis = {1, 0, 0}}}, model.ground().at({0, 0, 0}), body.at(Vec3(-turned_part.centre)), "hinge");
+  model.connect(Hinge{Revolute{.axis = {1, 0, 0}}}, model.ground().at({0, 0, 0}), body.at(Vec3(-turned_part.centre)),
+                "hinge");
   State x = model.reference_state();
   compute_accelerations(model, x);
   double const rate = angular_acceleration(model, x, body.centre())[0];
@@ -91,7 +94,8 @@ TEST(Inertia, PartsAddUp) {
   EXPECT_LT((both.tensor - whole.tensor).norm(), 1e-13 * whole.tensor.norm());
   // two halves of a box, placed in turned axes
   Placement const half{Vec3(0.5, 0, 0), roll_pitch_yaw(0, 0, pi / 2)};
-  Inertia const first = Inertia::box(2.0, {2, 1, 3}).placed(half), second = Inertia::box(2.0, {1, 2, 3}).placed(Placement::at({-0.5, 0, 0}));
+  Inertia const first = Inertia::box(2.0, {2, 1, 3}).placed(half),
+                second = Inertia::box(2.0, {1, 2, 3}).placed(Placement::at({-0.5, 0, 0}));
   EXPECT_LT(((first + second).tensor - Inertia::box(4.0, {2, 2, 3}).tensor).norm(), 1e-14);
   EXPECT_LT((first + second).centre.norm(), 1e-15);
 }
@@ -114,10 +118,13 @@ TEST(Inertia, RefusesWhatNoMassHas) {
   EXPECT_TRUE(has(refusal([&] { (void)long_rod.about({0, 0, 0}); }), "violate the triangle inequality"));
   EXPECT_TRUE(has(refusal([&] { (void)long_rod.placed({}); }), "violate the triangle inequality"));
   EXPECT_TRUE(has(refusal([&] { (void)(long_rod + turned_part); }), "violate the triangle inequality"));
-  EXPECT_TRUE(has(refusal([&] { (void)turned_part.about({0, 0, 0}, 2.0 * identity()); }), "Inertia::about: the placement's axes"));
-  EXPECT_TRUE(has(refusal([] { (void)Inertia::box(1.0, {1, -2, 3}); }), "Inertia::box: the edge along y must be positive"));
+  EXPECT_TRUE(has(refusal([&] { (void)turned_part.about({0, 0, 0}, 2.0 * identity()); }),
+                  "Inertia::about: the placement's axes"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)Inertia::box(1.0, {1, -2, 3}); }), "Inertia::box: the edge along y must be positive"));
   EXPECT_TRUE(has(refusal([] { (void)Inertia::sphere(-1.0, 1.0); }), "Inertia::sphere: the mass must be positive"));
-  EXPECT_TRUE(has(refusal([] { (void)Inertia::tube(1.0, 1.0, 1.5, 1.0); }), "the inner radius must lie in [0, 1] m, but is 1.5 m"));
+  EXPECT_TRUE(has(refusal([] { (void)Inertia::tube(1.0, 1.0, 1.5, 1.0); }),
+                  "the inner radius must lie in [0, 1] m, but is 1.5 m"));
 }
 
 }  // namespace polybody::inertia_test

@@ -146,7 +146,8 @@ TriangleMesh torus(double big, double small, Index n) {
   TriangleMesh out;
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) {
-      double const u = 2 * pi * double(i) / double(n), v = 2 * pi * double(j) / double(n), r = big + small * std::cos(v);
+      double const u = 2 * pi * double(i) / double(n), v = 2 * pi * double(j) / double(n),
+                   r = big + small * std::cos(v);
       out.points.emplace_back(r * std::cos(u), r * std::sin(u), small * std::sin(v));
       Index const a = i * n + j, b = (i + 1) % n * n + j, c = (i + 1) % n * n + (j + 1) % n, d = i * n + (j + 1) % n;
       out.triangles.push_back({a, b, c});
@@ -162,7 +163,8 @@ TEST(TriangleMesh, TorusHasItsClosedForm) {
   auto const limit = [](double c, double f) { return f + (f - c) / 3.0; };
   EXPECT_NEAR(limit(coarse.mass, fine.mass), mass, 2e-5 * mass);
   EXPECT_NEAR(limit(coarse.tensor(2, 2), fine.tensor(2, 2)), mass * (big * big + 0.75 * small * small), 1e-4 * mass);
-  EXPECT_NEAR(limit(coarse.tensor(0, 0), fine.tensor(0, 0)), mass * (0.5 * big * big + 0.625 * small * small), 1e-4 * mass);
+  EXPECT_NEAR(limit(coarse.tensor(0, 0), fine.tensor(0, 0)), mass * (0.5 * big * big + 0.625 * small * small),
+              1e-4 * mass);
 }
 
 // Two boxes side by side are the box of both: integrals of meshes add like parts.
@@ -178,11 +180,13 @@ TEST(TriangleMesh, PartsAddUp) {
 TEST(TriangleMesh, FilesOfEachFormAgree) {
   TriangleMesh const mesh = box(1, 2, 4);
   std::string obj = "# a box\no box\n";
-  for (Vec3 const& p : mesh.points) obj += "v " + std::to_string(p[0]) + ' ' + std::to_string(p[1]) + " +" + std::to_string(p[2]) + "\n";
+  for (Vec3 const& p : mesh.points)
+    obj += "v " + std::to_string(p[0]) + ' ' + std::to_string(p[1]) + " +" + std::to_string(p[2]) + "\n";
   // faces of four corners, with numbers of normals, and from the end
   obj += "f 1//1 3//1 4//1 2//1\nf 5 6 8 7\nf -8 -7 -3 -4\nf 3/1 7/1 8/1 4/1\r\nf 1 5 7 3\nf 2 4 8 6 # the last\n";
   Inertia const exact = solid_inertia(mesh, 1e9);
-  for (auto const& [name, text] : {std::pair{"text.stl", stl_of(mesh)}, {"binary.stl", binary_stl_of(mesh)}, {"a.obj", obj}}) {
+  for (auto const& [name, text] :
+       {std::pair{"text.stl", stl_of(mesh)}, {"binary.stl", binary_stl_of(mesh)}, {"a.obj", obj}}) {
     TriangleMesh const read = read_mesh(written(name, text), 1e-3);
     EXPECT_EQ(read.points.size(), 8u) << name;
     EXPECT_EQ(read.triangles.size(), 12u) << name;
@@ -205,7 +209,8 @@ TEST(TriangleMesh, RefusesOpenAndTurnedSurfaces) {
   EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(mesh, 1.0); }), "the enclosed volume is negative (-1 m³)"));
   EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(box(1, 1, 0), 1.0); }), "the enclosed volume is 0 m³"));
   mesh.triangles[0][1] = 8;
-  EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(mesh, 1.0); }), "triangle 0, counted from 0, has the corner 8, but the mesh has 8 points"));
+  EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(mesh, 1.0); }),
+                  "triangle 0, counted from 0, has the corner 8, but the mesh has 8 points"));
   mesh = box(1, 1, 1e21);
   EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(mesh, 1.0); }), "must lie in [-1e+20, 1e+20] m, but is 1e+21 m"));
   EXPECT_TRUE(has(refusal([&] { (void)solid_inertia(box(1, 1, 1), 0.0); }), "the density must be positive"));
@@ -218,17 +223,22 @@ std::string refused(std::string const& name, std::string const& text) {
 }
 
 TEST(TriangleMesh, RefusesWrongFilesWithFileAndLine) {
-  EXPECT_TRUE(has(refused("a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n"), "mesh_a.stl, line 4: 'x' is not a number"));
-  EXPECT_TRUE(has(refused("b.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nendloop\n"), "line 5: 'endloop' is not 'vertex'"));
+  EXPECT_TRUE(has(refused("a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n"),
+                  "mesh_a.stl, line 4: 'x' is not a number"));
+  EXPECT_TRUE(has(refused("b.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nendloop\n"),
+                  "line 5: 'endloop' is not 'vertex'"));
   EXPECT_TRUE(has(refused("c.stl", "solid a\nendsolid\n"), "the file has no triangles"));
   EXPECT_TRUE(has(refused("d.stl", "solid a\nfacet normal 0 0 1\nouter\n"), "the file ends before 'loop'"));
   EXPECT_TRUE(has(refused("e.stl", binary_stl_of(box(1, 1, 1)).substr(0, 100)), "neither an STL text"));
   EXPECT_TRUE(has(refused("f.stl", binary_stl_of(box(1e30, 1, 1))), "triangle 0, counted from 0, has the coordinate"));
-  EXPECT_TRUE(has(refused("a.obj", "v 0 0 0\nf 1 2 3\n"), "mesh_a.obj, line 2: '2' is not one of the 1 points before this face"));
+  EXPECT_TRUE(has(refused("a.obj", "v 0 0 0\nf 1 2 3\n"),
+                  "mesh_a.obj, line 2: '2' is not one of the 1 points before this face"));
   EXPECT_TRUE(has(refused("b.obj", "v 0 0 0\nf 1 1\n"), "a face needs at least three corners, but has 2"));
   EXPECT_TRUE(has(refused("c.obj", "v 0 0 0\ncurv 1 2\n"), "line 2: 'curv' is not a statement"));
-  EXPECT_TRUE(has(message_of<IoError>([] { (void)read_mesh("missing.stl", 1.0); }), "missing.stl: the file cannot be opened"));
-  EXPECT_TRUE(has(refusal([] { (void)read_mesh("a.stl", 0.0); }), "a.stl: the unit must lie in [1e-09, 1e+09] m, but is 0 m"));
+  EXPECT_TRUE(
+      has(message_of<IoError>([] { (void)read_mesh("missing.stl", 1.0); }), "missing.stl: the file cannot be opened"));
+  EXPECT_TRUE(
+      has(refusal([] { (void)read_mesh("a.stl", 0.0); }), "a.stl: the unit must lie in [1e-09, 1e+09] m, but is 0 m"));
 }
 
 }  // namespace polybody::triangle_mesh_test

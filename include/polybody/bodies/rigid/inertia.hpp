@@ -45,8 +45,8 @@ inline Mat3 roll_pitch_yaw(double roll, double pitch, double yaw) {
 }
 
 /// Mass, centre of mass and inertia tensor of a rigid part, in the axes of the part:
-///   Inertia const arm = Inertia::cylinder(2.0, 0.03, 0.5) + Inertia::sphere(1.0, 0.1).placed(Placement::at({0, 0, 0.3}));
-///   auto const link = model.add(Rigid<>(arm.body()), "arm");
+///   Inertia const arm = Inertia::cylinder(2.0, 0.03, 0.5) + Inertia::sphere(1.0, 0.1).placed(Placement::at({0, 0,
+///   0.3})); auto const link = model.add(Rigid<>(arm.body()), "arm");
 /// Every operation refuses a mass that is not positive and a tensor that no distribution of mass has.
 struct Inertia {
   Required<double> mass;       ///< m [kg]
@@ -81,7 +81,8 @@ struct Inertia {
   }
 
   /// Parameters of a rigid body `Rigid<>`. `placement` gives the origin and the axes of the part in world axes. The
-  /// body has the axes of the part, and its points are given from the centre of mass: `body.at(point - inertia.centre)`.
+  /// body has the axes of the part, and its points are given from the centre of mass: `body.at(point -
+  /// inertia.centre)`.
   template <class = void>  // compiled only if used
   RigidShape::Parameters body(Placement const& placement = {}) const {
     check("Inertia");
@@ -102,7 +103,8 @@ struct Inertia {
   ///   J_x = m (b² + c²)/12 …
   template <class = void>  // compiled only if used
   static Inertia box(double mass, Vec3 const& edges) {
-    for (int i = 0; i < 3; ++i) require_positive(edges[i], "Inertia::box: the edge along ", i == 0 ? "x" : i == 1 ? "y" : "z");
+    for (int i = 0; i < 3; ++i)
+      require_positive(edges[i], "Inertia::box: the edge along ", i == 0 ? "x" : i == 1 ? "y" : "z");
     Vec3 const square = edges.cwiseProduct(edges) * (mass / 12.0);
     return of_principal("Inertia::box", mass, {square[1] + square[2], square[2] + square[0], square[0] + square[1]});
   }
@@ -122,8 +124,8 @@ struct Inertia {
     double const all = 0.4 * mass * radius * radius;
     return of_principal("Inertia::sphere", mass, {all, all, all});
   }
-  /// Tube with the radii `outer` and `inner` [m] and `length` along z [m]; the origin is its centre. For `inner` = `outer`
-  /// it is a thin shell.  J_z = m (r² + s²)/2,  J_x = J_y = m (3 (r² + s²) + l²)/12.
+  /// Tube with the radii `outer` and `inner` [m] and `length` along z [m]; the origin is its centre. For `inner` =
+  /// `outer` it is a thin shell.  J_z = m (r² + s²)/2,  J_x = J_y = m (3 (r² + s²) + l²)/12.
   template <class = void>  // compiled only if used
   static Inertia tube(double mass, double outer, double inner, double length) {
     require_positive(outer, "Inertia::tube: the outer radius");

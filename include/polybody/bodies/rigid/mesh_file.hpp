@@ -140,16 +140,17 @@ void read_binary_stl(std::string const& file, std::string_view bytes, double uni
     for (std::size_t k = 0; k < 9; ++k) {
       double const x = double(std::bit_cast<float>(four_bytes(bytes.data() + i + 12 + 4 * k)));
       if (!(std::abs(x) <= 1e20))
-        throw IoError("file.content", {ErrorObject{file}, ": triangle ", (i - 84) / 50,
-                                       ", counted from 0, has the coordinate ", ErrorValue{x},
-                                       ", but magnitudes up to 1e+20 are allowed."});
+        throw IoError("file.content",
+                      {ErrorObject{file}, ": triangle ", (i - 84) / 50, ", counted from 0, has the coordinate ",
+                       ErrorValue{x}, ", but magnitudes up to 1e+20 are allowed."});
       p[k / 3][Index(k % 3)] = x;
     }
     corners.add(p, unit);
   }
 }
 
-/// Reads the corner of a face of OBJ: a number of a point, from 1 or from the end, perhaps with other numbers after '/'.
+/// Reads the corner of a face of OBJ: a number of a point, from 1 or from the end, perhaps with other numbers after
+/// '/'.
 template <class = void>  // compiled only if used
 Index obj_corner(MeshText& text, std::string const& word, std::size_t points) {
   std::string_view const digits = std::string_view(word).substr(0, word.find('/'));
@@ -191,8 +192,8 @@ void read_obj(MeshText text, double unit, TriangleMesh& mesh) {
 template <class = void>  // compiled only if used
 TriangleMesh read_mesh(std::string const& file, double unit) {
   if (!(unit >= 1e-9 && unit <= 1e9))
-    throw InvalidInput("mesh.unit", {ErrorObject{file}, ": the unit must lie in [1e-09, 1e+09] m, but is ",
-                                     ErrorValue{unit}, " m."});
+    throw InvalidInput(
+        "mesh.unit", {ErrorObject{file}, ": the unit must lie in [1e-09, 1e+09] m, but is ", ErrorValue{unit}, " m."});
   std::ifstream in(file, std::ios::binary);
   std::string content;
   for (char block[4096]; in.read(block, sizeof block), in.gcount() > 0;)

@@ -53,18 +53,20 @@ MeshEdges edges_of(TriangleMesh const& mesh) {
 /// \throws InvalidInput for a mesh without triangles, a triangle without its corners, and a coordinate beyond 1e20 m.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_corners(TriangleMesh const& mesh) {
-  if (mesh.triangles.empty()) throw InvalidInput("mesh.empty", {ErrorObject{mesh.name}, ": the mesh has no triangles."});
+  if (mesh.triangles.empty())
+    throw InvalidInput("mesh.empty", {ErrorObject{mesh.name}, ": the mesh has no triangles."});
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (!(std::abs(mesh.points[i][k]) <= 1e20))
-        throw InvalidInput("mesh.coordinate",
-                           {ErrorObject{mesh.name}, ": a coordinate of point ", i, ", counted from 0, must lie in [-1e+20, 1e+20] m, but is ",
-                            ErrorValue{mesh.points[i][k]}, " m."});
+        throw InvalidInput("mesh.coordinate", {ErrorObject{mesh.name}, ": a coordinate of point ", i,
+                                               ", counted from 0, must lie in [-1e+20, 1e+20] m, but is ",
+                                               ErrorValue{mesh.points[i][k]}, " m."});
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (Index const corner : mesh.triangles[i])
       if (corner < 0 || corner >= Index(mesh.points.size()))
-        throw InvalidInput("mesh.corner", {ErrorObject{mesh.name}, ": triangle ", i, ", counted from 0, has the corner ",
-                                           ErrorValue{corner}, ", but the mesh has ", mesh.points.size(), " points."});
+        throw InvalidInput("mesh.corner",
+                           {ErrorObject{mesh.name}, ": triangle ", i, ", counted from 0, has the corner ",
+                            ErrorValue{corner}, ", but the mesh has ", mesh.points.size(), " points."});
 }
 
 /// \throws InvalidInput unless the surface is closed and its triangles have one orientation.
@@ -113,15 +115,17 @@ Inertia solid_inertia(TriangleMesh const& mesh, double density) {
     Vec3 const s = p[0] + p[1] + p[2];
     volume += d / 6.0;
     first += s * (d / 24.0);
-    second += (p[0] * p[0].transpose() + p[1] * p[1].transpose() + p[2] * p[2].transpose() + s * s.transpose()) * (d / 120.0);
+    second +=
+        (p[0] * p[0].transpose() + p[1] * p[1].transpose() + p[2] * p[2].transpose() + s * s.transpose()) * (d / 120.0);
   }
   if (!(std::abs(volume) > 1e-12 * size * size * size) || size < 1e-20)
     throw InvalidInput("mesh.volume", {ErrorObject{mesh.name}, ": the enclosed volume is ", ErrorValue{volume},
                                        " m³, which is zero within round-off for a mesh of size ", size, " m."});
   if (volume < 0.0)
-    throw InvalidInput("mesh.volume", {ErrorObject{mesh.name}, ": the enclosed volume is negative (", ErrorValue{volume},
-                                       " m³): the triangles are turned inside out. Reverse the order of the corners of "
-                                       "each triangle."});
+    throw InvalidInput("mesh.volume",
+                       {ErrorObject{mesh.name}, ": the enclosed volume is negative (", ErrorValue{volume},
+                        " m³): the triangles are turned inside out. Reverse the order of the corners of "
+                        "each triangle."});
   Vec3 const c = first / volume;
   second -= volume * (c * c.transpose());
   Mat3 const tensor = density * (second.trace() * identity() - second);
