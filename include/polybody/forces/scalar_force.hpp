@@ -3,9 +3,14 @@
 /// Forces along one relative coordinate of two markers: an angle, a translation or a distance. A scalar law computes
 /// the force from the coordinate x, its rate, first-order states and time.
 
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
 #include <polybody/forces/force_element.hpp>
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/joint_coordinate.hpp>
+#include <polybody/math/secant.hpp>
 
 namespace polybody {
 
@@ -16,6 +21,7 @@ struct ScalarUnits {
   char const* force;      ///< unit of the force: "N" or "N m"
   char const* stiffness;  ///< force per x
   char const* damping;    ///< force per ẋ
+  double largest;         ///< bound of |x|: π for an angle without full turns, infinite otherwise [rad], [m]
 
   /// \throws InvalidInput unless `x` is finite and positive; `unit` is its unit. `what` and `part` name the object and
   /// the parameter.
@@ -74,11 +80,26 @@ concept HasScalarStatePotential =
 
 namespace detail {
 
+/// The larger of x and zero.
+template <StateScalar T>
+T positive_part(T const& x) {
+  return value_of(x) > 0.0 ? x : T(0.0);
+}
+/// The larger of x and zero at both ends of a step, with the secant slope between them.
+template <int N>
+Secant<N> positive_part(Secant<N> const& x) {
+  double const a = std::max(x.a, 0.0), b = std::max(x.b, 0.0);
+  double const slope = x.a == x.b ? double(x.a > 0.0) : (b - a) / (x.b - x.a);
+  return {a, b, x.d * slope};
+}
+
+inline constexpr double endless = std::numeric_limits<double>::infinity();
+
 /// Rotation of b about the third axis of a, in (−π, π].
 struct AngleBetween {
   static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::frame;
   static constexpr JointMotion::Kind motion = JointMotion::Kind::turn;
-  static constexpr ScalarUnits units = {"rad", "rad/s", "N m", "N m/rad", "N m s/rad"};
+  static constexpr ScalarUnits units = {"rad", "rad/s", "N m", "N m/rad", "N m s/rad", std::numbers::pi};
   static constexpr bool counts_turns = false;
   template <StateScalar T>
   static ConstraintTerms<1, T> terms(Frame<T> const& a, Frame<T> const& b) {
@@ -87,13 +108,14 @@ struct AngleBetween {
 };
 /// Rotation of b about the third axis of a with its full turns.
 struct TurnsBetween : AngleBetween {
+  static constexpr ScalarUnits units = {"rad", "rad/s", "N m", "N m/rad", "N m s/rad", endless};
   static constexpr bool counts_turns = true;
 };
 /// Translation of b along the third axis of a.
 struct TranslationBetween {
   static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::point;
   static constexpr JointMotion::Kind motion = JointMotion::Kind::slide;
-  static constexpr ScalarUnits units = {"m", "m/s", "N", "N/m", "N s/m"};
+  static constexpr ScalarUnits units = {"m", "m/s", "N", "N/m", "N s/m", endless};
   static constexpr bool counts_turns = false;
   template <StateScalar T>
   static ConstraintTerms<1, T> terms(Frame<T> const& a, Frame<T> const& b) {

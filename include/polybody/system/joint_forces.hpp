@@ -97,9 +97,9 @@ inline void turn_marker(ModelParts& parts, Index published, int k) {
 template <JointForce F, class... Bs>
 ElementHandle<F> add_joint_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                                  std::tuple<BodyPool<Bs>...>& bodies, std::array<Index, 2> markers, int k) {
+  name = checked_force_name(parts, pool, force, std::move(name));
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[0], F::needs, name), ...);
   (require_observed(std::get<BodyPool<Bs>>(bodies), markers[1], needs_of_second<F>(), name), ...);
-  name = checked_force_name(parts, pool, force, std::move(name));
   parts.origin.change();
   if (k != 2)
     for (Index& marker : markers) {
