@@ -18,7 +18,9 @@ namespace detail {
 /// Receives the messages of liburdfdom while it exists, and keeps the first error.
 class UrdfMessages : public console_bridge::OutputHandler {
  public:
-  UrdfMessages() : lock_(mutex()), previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
+  UrdfMessages() : lock_(mutex()), previous_(console_bridge::getOutputHandler()) {
+    console_bridge::useOutputHandler(this);
+  }
   ~UrdfMessages() override {
     if (previous_)
       console_bridge::useOutputHandler(previous_);
@@ -151,12 +153,18 @@ class UrdfConversion {
   }
   static UrdfJoint::Kind kind_of(urdf::Joint const& from) {
     switch (from.type) {
-      case urdf::Joint::REVOLUTE: return UrdfJoint::Kind::revolute;
-      case urdf::Joint::CONTINUOUS: return UrdfJoint::Kind::continuous;
-      case urdf::Joint::PRISMATIC: return UrdfJoint::Kind::prismatic;
-      case urdf::Joint::FLOATING: return UrdfJoint::Kind::floating;
-      case urdf::Joint::PLANAR: return UrdfJoint::Kind::planar;
-      default: return UrdfJoint::Kind::fixed;
+      case urdf::Joint::REVOLUTE:
+        return UrdfJoint::Kind::revolute;
+      case urdf::Joint::CONTINUOUS:
+        return UrdfJoint::Kind::continuous;
+      case urdf::Joint::PRISMATIC:
+        return UrdfJoint::Kind::prismatic;
+      case urdf::Joint::FLOATING:
+        return UrdfJoint::Kind::floating;
+      case urdf::Joint::PLANAR:
+        return UrdfJoint::Kind::planar;
+      default:
+        return UrdfJoint::Kind::fixed;
     }
   }
   static UrdfLimit limit_of(urdf::JointLimits const& from, UrdfJoint const& joint, std::string const& where) {
@@ -165,8 +173,8 @@ class UrdfConversion {
                         .effort = checked(from.effort, where, "the effort of <limit>", 0.0, 1e30),
                         .velocity = checked(from.velocity, where, "the velocity of <limit>", 0.0, 1e30)};
     if (out.lower > out.upper && joint.kind != UrdfJoint::Kind::continuous)
-      throw IoError("file.content", {ErrorObject{where}, ": the lower <limit> must not exceed the upper one, ", out.upper,
-                                     ", but is ", ErrorValue{out.lower}, "."});
+      throw IoError("file.content", {ErrorObject{where}, ": the lower <limit> must not exceed the upper one, ",
+                                     out.upper, ", but is ", ErrorValue{out.lower}, "."});
     return out;
   }
 

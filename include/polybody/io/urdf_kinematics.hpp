@@ -19,9 +19,9 @@ namespace detail {
 
 /// Position and velocity of a link in world axes.
 struct UrdfPose {
-  Placement frame = {};           ///< frame of the link
-  Vec3 velocity = Vec3::Zero();   ///< (3) velocity of the origin [m/s]
-  Vec3 rotation = Vec3::Zero();   ///< (3) angular velocity [rad/s]
+  Placement frame = {};          ///< frame of the link
+  Vec3 velocity = Vec3::Zero();  ///< (3) velocity of the origin [m/s]
+  Vec3 rotation = Vec3::Zero();  ///< (3) angular velocity [rad/s]
 };
 
 /// Body of each link: the index of the link whose body carries it, or −1 for the ground. A link with mass (`is_body`)
@@ -35,7 +35,8 @@ std::vector<Index> urdf_bodies(UrdfRobot const& robot, std::vector<bool> const& 
   std::vector<Index> out(n, none);
   auto const fixed_parent = [&](std::size_t i) -> Index {
     Index const j = robot.links[i].joint;
-    return j >= 0 && robot.joints[std::size_t(j)].kind == UrdfJoint::Kind::fixed ? robot.joints[std::size_t(j)].parent : none;
+    return j >= 0 && robot.joints[std::size_t(j)].kind == UrdfJoint::Kind::fixed ? robot.joints[std::size_t(j)].parent
+                                                                                 : none;
   };
   auto const inherit = [&] {
     for (std::size_t i = 0; i < n; ++i)
@@ -52,10 +53,11 @@ std::vector<Index> urdf_bodies(UrdfRobot const& robot, std::vector<bool> const& 
   inherit();
   for (std::size_t i = 0; i < n; ++i)
     if (out[i] == none)
-      throw InvalidInput("urdf.no_mass", {ErrorObject{robot.where(robot.links[i])},
-                                          ": the link moves, but has no mass, and no fixed joint connects it to a link "
-                                          "with mass. Give it an <inertial> element with a positive <mass>, or, for the "
-                                          "root, use UrdfRoot::fixed."});
+      throw InvalidInput("urdf.no_mass",
+                         {ErrorObject{robot.where(robot.links[i])},
+                          ": the link moves, but has no mass, and no fixed joint connects it to a link "
+                          "with mass. Give it an <inertial> element with a positive <mass>, or, for the "
+                          "root, use UrdfRoot::fixed."});
   return out;
 }
 
@@ -120,13 +122,15 @@ UrdfPose urdf_child(UrdfRobot const& robot, UrdfJoint const& j, UrdfPose const& 
 /// of the root.
 /// \throws InvalidInput for a name that no joint has, and for a number that is not finite.
 template <class = void>  // compiled only if used
-std::vector<UrdfPose> urdf_poses(UrdfRobot const& robot, UrdfPose const& root, std::map<std::string, UrdfMotion> const& given) {
+std::vector<UrdfPose> urdf_poses(UrdfRobot const& robot, UrdfPose const& root,
+                                 std::map<std::string, UrdfMotion> const& given) {
   for (auto const& [name, m] : given) {
     UrdfJoint const& j = robot.joints[std::size_t(robot.joint(name))];
     for (double const x : {m.position, m.rate})
       if (!(std::abs(x) <= 1e9))
-        throw InvalidInput("urdf.motion", {ErrorObject{robot.where(j)}, ": its position and rate must lie in [-1e+09, 1e+09], but one is ",
-                                           ErrorValue{x}, "."});
+        throw InvalidInput("urdf.motion",
+                           {ErrorObject{robot.where(j)},
+                            ": its position and rate must lie in [-1e+09, 1e+09], but one is ", ErrorValue{x}, "."});
     if (j.kind == UrdfJoint::Kind::fixed)
       throw InvalidInput("urdf.motion", {ErrorObject{robot.where(j)}, ": a fixed joint has no motion."});
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <variant>
 
+#include <polybody/forces/limits.hpp>
 #include <polybody/forces/spring_laws.hpp>
 #include <polybody/io/urdf_kinematics.hpp>
 #include <polybody/joints/gears.hpp>
@@ -15,12 +16,21 @@
 
 namespace polybody {
 
+/// Stiffness and damping of the stops at the limits of joints.
+struct UrdfStops {
+  Required<double> angle_stiffness;  ///< of revolute joints [N m/rad]
+  double angle_damping = 0.0;        ///< of revolute joints [N m s/rad]
+  Required<double> slide_stiffness;  ///< of prismatic joints [N/m]
+  double slide_damping = 0.0;        ///< of prismatic joints [N s/m]
+};
+
 /// Data of a model that a URDF file does not contain.
 struct UrdfOptions {
-  Required<UrdfRoot> root;    ///< attachment of the root link
-  Gravity gravity = {};       ///< gravity in world axes [m/s²]; zero by default
-  Placement placement = {};   ///< frame of the root link in world axes, in the reference configuration
-  bool free_mimics = false;   ///< true: joints with <mimic> move freely, and are not refused if no gear represents them
+  Required<UrdfRoot> root;   ///< attachment of the root link
+  Gravity gravity = {};      ///< gravity in world axes [m/s²]; zero by default
+  Placement placement = {};  ///< frame of the root link in world axes, in the reference configuration
+  bool free_mimics = false;  ///< true: joints with <mimic> move freely, and are not refused if no gear represents them
+  std::optional<UrdfStops> stops = {};  ///< stops at the limits of revolute and prismatic joints; none by default
 };
 
 /// Flexible body of type F in place of a link.
@@ -35,17 +45,20 @@ struct UrdfFlexibleLink {
 
 /// Point of a link: name of the link, and position (3) in its axes from its origin [m].
 struct UrdfPoint {
-  std::string link;            ///< name of the link
-  Vec3 point = Vec3::Zero();   ///< (3) position in axes of the link [m]
+  std::string link;           ///< name of the link
+  Vec3 point = Vec3::Zero();  ///< (3) position in axes of the link [m]
 };
 
-/// Model of a URDF file. Its reference configuration has all joints at zero. `model` is a `Model` like any other: bodies,
-/// joints and forces can be added. Joints of the file have the policy P and the names of the file. The lists contain
-/// further types of joints and forces; Fs are the types of flexible links.
+/// Model of a URDF file. Its reference configuration has all joints at zero. `model` is a `Model` like any other:
+/// bodies, joints and forces can be added. Joints of the file have the policy P and the names of the file. The lists
+/// contain further types of joints and forces; Fs are the types of flexible links.
 /// - A link with mass is a body in the axes of the link. A link without mass is a frame of another body.
-/// - A revolute, continuous or prismatic joint is a `Revolute` or `Prismatic` joint, a planar joint a `PlanarJoint`, and
+/// - A revolute, continuous or prismatic joint is a `Revolute` or `Prismatic` joint, a planar joint a `PlanarJoint`,
+/// and
 ///   a fixed joint between links with mass a `Weld`. A floating joint adds no joint.
-/// - The damping of a joint is a `LinearSpring` without stiffness. Limits and friction are data: `robot().joints`.
+/// - The damping of a joint is a `LinearSpring` without stiffness. With `stops` of the options, the limits of revolute
+/// and
+///   prismatic joints are `Limit` forces. Friction, effort and speed limits are data: `robot().joints`.
 /// - A joint that mimics another one is a `Gear` if both are revolute joints on one link with parallel axes.
 template <class P, class JointList = Joints<>, class ForceList = Forces<>, class... Fs>
 class UrdfModel;
@@ -59,15 +72,16 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   template <class G>
   using JointOf = Joint<G, P>;  ///< joint of the file with the geometry G
   /// Type of `model`.
-  using ModelType = Model<EachOnce<Bodies, Rigid<>, Fs...>,
-                          EachOnce<Joints, JointOf<Weld>, JointOf<Revolute>, JointOf<Prismatic>, JointOf<PlanarJoint>, Mimic, Js...>,
-                          EachOnce<Forces, AngleDamper, SlideDamper, Xs...>>;
+  using ModelType =
+      Model<EachOnce<Bodies, Rigid<>, Fs...>,
+            EachOnce<Joints, JointOf<Weld>, JointOf<Revolute>, JointOf<Prismatic>, JointOf<PlanarJoint>, Mimic, Js...>,
+            EachOnce<Forces, AngleDamper, SlideDamper, JointLimit, TurnsLimit, SlideLimit, Xs...>>;
 
   ModelType model;  ///< bodies, joints and forces
 
   /// Builds the model of `robot` with the `flexible` links.
-  /// \throws InvalidInput, naming file, line and element, for a link without mass that moves by itself, for a mimic that
-  /// no gear represents, and for a flexible link that does not exist.
+  /// \throws InvalidInput, naming file, line and element, for a link without mass that moves by itself, for a mimic
+  /// that no gear represents, and for a flexible link that does not exist.
   template <class = void>  // compiled only if used
   UrdfModel(UrdfRobot robot, UrdfOptions const& options, UrdfFlexibleLink<Fs> const&... flexible)
       : model(options.gravity), robot_(std::move(robot)), root_(options.root), bodies_(robot_.links.size()) {
@@ -83,23 +97,26 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
         bodies_[i].handle = model.add(Rigid<>(robot_.links[i].inertia->body(poses_[i].frame)), robot_.links[i].name);
     if (root_ == UrdfRoot::fixed && hosts_[0] >= 0)
       at_marker(0, Vec3::Zero(), [&](auto const& b) {
-        model.connect(JointOf<Weld>{}, model.ground().at(poses_[0].frame.origin), b, robot_.links[0].name + " on the ground");
+        model.connect(JointOf<Weld>{}, model.ground().at(poses_[0].frame.origin), b,
+                      robot_.links[0].name + " on the ground");
       });
-    for (UrdfJoint const& j : robot_.joints) joints_.push_back(add_joint(j));
+    for (UrdfJoint const& j : robot_.joints) joints_.push_back(add_joint(j, options.stops));
     for (UrdfJoint const& j : robot_.joints)
       if (j.mimic && !options.free_mimics) add_mimic(j);
   }
 
   UrdfRobot const& robot() const { return robot_; }  ///< content of the file
 
-  /// Handle of the body of type B that carries a link. \throws InvalidInput for a link that no body of this type carries.
+  /// Handle of the body of type B that carries a link. \throws InvalidInput for a link that no body of this type
+  /// carries.
   template <Body B = Rigid<>>
   BodyHandle<B> const& body(std::string const& link) const {
     Index const host = hosts_[std::size_t(robot_.link(link))];
     if (host >= 0)
       if (auto const* const found = std::get_if<BodyHandle<B>>(&bodies_[std::size_t(host)].handle)) return *found;
-    throw InvalidInput("urdf.other_body", {ErrorObject{robot_.where(robot_.links[std::size_t(robot_.link(link))])},
-                                           host < 0 ? ": the link belongs to the ground." : ": the body of the link has another type."});
+    throw InvalidInput("urdf.other_body",
+                       {ErrorObject{robot_.where(robot_.links[std::size_t(robot_.link(link))])},
+                        host < 0 ? ": the link belongs to the ground." : ": the body of the link has another type."});
   }
   /// Handle of a joint with the geometry G: `joint<Revolute>("elbow")`. \throws InvalidInput for a joint of another
   /// geometry.
@@ -107,8 +124,8 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   ElementHandle<JointOf<G>> const& joint(std::string const& name) const {
     Index const i = robot_.joint(name);
     if (auto const* const found = std::get_if<ElementHandle<JointOf<G>>>(&joints_[std::size_t(i)])) return *found;
-    throw InvalidInput("urdf.other_joint", {ErrorObject{robot_.where(robot_.joints[std::size_t(i)])}, ": the joint is not a ",
-                                            G::name, "."});
+    throw InvalidInput("urdf.other_joint", {ErrorObject{robot_.where(robot_.joints[std::size_t(i)])},
+                                            ": the joint is not a ", G::name, "."});
   }
   /// Marker at a point of a link that a rigid body carries. \throws InvalidInput for another link.
   template <class = void>  // compiled only if used
@@ -128,7 +145,8 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   ElementHandle<J> connect(J const& joint, UrdfPoint const& a, UrdfPoint const& b, std::string const& name = "") {
     ElementHandle<J> out;
     at_marker(robot_.link(a.link), a.point, [&](auto const& first) {
-      at_marker(robot_.link(b.link), b.point, [&](auto const& second) { out = model.connect(joint, first, second, name); });
+      at_marker(robot_.link(b.link), b.point,
+                [&](auto const& second) { out = model.connect(joint, first, second, name); });
     });
     return out;
   }
@@ -150,6 +168,10 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     State x = model.reference_state();
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       std::visit([&](auto const& handle) { set(x, handle, i, poses[i]); }, bodies_[i].handle);
+    for (auto const& [link, force] : turns_)
+      model.states(x, force)[0] =
+          detail::urdf_motion(robot_, robot_.joints[std::size_t(robot_.links[std::size_t(link)].joint)], motions)
+              .position;
     return x;
   }
 
@@ -209,7 +231,8 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   }
   template <Body B, class F>
   void at_flexible(Part const& part, Vec3 const& point, F&& f) const {
-    if (auto const* const handle = std::get_if<BodyHandle<B>>(&part.handle)) f(std::get<PointOf<B>>(part.at)(*handle, point));
+    if (auto const* const handle = std::get_if<BodyHandle<B>>(&part.handle))
+      f(std::get<PointOf<B>>(part.at)(*handle, point));
   }
 
   template <class B>
@@ -230,27 +253,37 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   }
   void set(State&, std::monostate, std::size_t, detail::UrdfPose const&) const {}
 
-  /// Adds a joint at the origin of its child link, with the damping of its motion.
-  AnyJoint add_joint(UrdfJoint const& j) {
+  /// Adds a joint at the origin of its child link, with the damping and the stops of its motion.
+  AnyJoint add_joint(UrdfJoint const& j, std::optional<UrdfStops> const& stops) {
     using Kind = UrdfJoint::Kind;
     if (j.kind == Kind::floating || hosts_[std::size_t(j.parent)] == hosts_[std::size_t(j.child)]) return {};
+    if (j.kind == Kind::fixed) return connect_at(JointOf<Weld>{}, j);
     Vec3 const axis = poses_[std::size_t(j.child)].frame.axes * j.axis;
-    auto const damper = [&] { return LinearSpring{.stiffness = 0.0, .damping = j.damping}; };
-    auto const damping = j.name + " damping";
-    switch (j.kind) {
-      case Kind::fixed: return connect_at(JointOf<Weld>{}, j);
-      case Kind::planar: return connect_at(JointOf<PlanarJoint>{PlanarJoint{.normal = axis}}, j);
-      case Kind::prismatic: {
-        auto const handle = connect_at(JointOf<Prismatic>{Prismatic{.axis = axis}}, j);
-        if (j.damping > 0.0) model.apply(SlideDamper{damper()}, handle, damping);
-        return handle;
-      }
-      default: {
-        auto const handle = connect_at(JointOf<Revolute>{Revolute{.axis = axis}}, j);
-        if (j.damping > 0.0) model.apply(AngleDamper{damper()}, handle, damping);
-        return handle;
-      }
+    if (j.kind == Kind::planar) return connect_at(JointOf<PlanarJoint>{PlanarJoint{.normal = axis}}, j);
+    if (j.kind == Kind::prismatic) {
+      auto const handle = connect_at(JointOf<Prismatic>{Prismatic{.axis = axis}}, j);
+      apply_damping<SlideDamper>(j, handle);
+      if (stops && j.limit)
+        model.apply(SlideLimit{limit(j, stops->slide_stiffness, stops->slide_damping)}, handle, j.name + " limit");
+      return handle;
     }
+    auto const handle = connect_at(JointOf<Revolute>{Revolute{.axis = axis}}, j);
+    apply_damping<AngleDamper>(j, handle);
+    if (stops && j.limit && j.kind == Kind::revolute) {
+      Limit const law = limit(j, stops->angle_stiffness, stops->angle_damping);
+      if (std::max(-law.lower, law.upper) < std::numbers::pi)
+        model.apply(JointLimit{law}, handle, j.name + " limit");
+      else  // beyond half a turn, the limit counts turns
+        turns_.emplace_back(j.child, model.apply(TurnsLimit{law}, handle, j.name + " limit"));
+    }
+    return handle;
+  }
+  static Limit limit(UrdfJoint const& j, double stiffness, double damping) {
+    return {.lower = j.limit->lower, .upper = j.limit->upper, .stiffness = stiffness, .damping = damping};
+  }
+  template <class F, class J>
+  void apply_damping(UrdfJoint const& j, ElementHandle<J> const& handle) {
+    if (j.damping > 0.0) model.apply(F{{.stiffness = 0.0, .damping = j.damping}}, handle, j.name + " damping");
   }
   template <class J>
   ElementHandle<J> connect_at(J const& joint, UrdfJoint const& j) {
@@ -266,9 +299,12 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
                                         "\" is not supported, because ", why,
                                         ". Set free_mimics of UrdfOptions, and add a coupling to the model."});
     };
-    auto const turns = [](UrdfJoint const& j) { return j.kind == UrdfJoint::Kind::revolute || j.kind == UrdfJoint::Kind::continuous; };
+    auto const turns = [](UrdfJoint const& j) {
+      return j.kind == UrdfJoint::Kind::revolute || j.kind == UrdfJoint::Kind::continuous;
+    };
     if (!turns(a) || !turns(b)) refuse("a gear needs two revolute joints");
-    if (hosts_[std::size_t(a.parent)] != hosts_[std::size_t(b.parent)]) refuse("the joints have different parent links");
+    if (hosts_[std::size_t(a.parent)] != hosts_[std::size_t(b.parent)])
+      refuse("the joints have different parent links");
     if (b.mimic->offset != 0.0) refuse("the offset is " + number(b.mimic->offset) + " rad, but a gear needs 0 rad");
     Placement const &of_a = poses_[std::size_t(a.child)].frame, &of_b = poses_[std::size_t(b.child)].frame;
     Vec3 const axis = of_a.axes * a.axis, other = of_b.axes * b.axis;
@@ -282,12 +318,16 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
       if (m == 0 || std::abs(of - m) > 1e-9 * of) continue;
       if (ratio > 0.0 && m == n) refuse("both joints turn equally, which no gear does");
       bool const ring_is_a = ratio > 0.0 && m > n, ring_is_b = ratio > 0.0 && !ring_is_a;
-      connect(Mimic{Gear{.teeth_a = ring_is_a ? -m : m, .teeth_b = ring_is_b ? -n : n, .axis = axis, .centres = across.normalized()}},
-              {robot_.links[std::size_t(a.child)].name}, {robot_.links[std::size_t(b.child)].name, of_b.axes.transpose() * (across - line)},
-              b.name + " mimic");
+      connect(Mimic{Gear{.teeth_a = ring_is_a ? -m : m,
+                         .teeth_b = ring_is_b ? -n : n,
+                         .axis = axis,
+                         .centres = across.normalized()}},
+              {robot_.links[std::size_t(a.child)].name},
+              {robot_.links[std::size_t(b.child)].name, of_b.axes.transpose() * (across - line)}, b.name + " mimic");
       return;
     }
-    refuse("the multiplier " + number(b.mimic->multiplier) + " is not a ratio of integers with a denominator up to 1000");
+    refuse("the multiplier " + number(b.mimic->multiplier) +
+           " is not a ratio of integers with a denominator up to 1000");
   }
 
   UrdfRobot robot_;
@@ -296,6 +336,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   std::vector<Part> bodies_;                  ///< by links; empty for links that other bodies carry
   std::vector<Index> hosts_ = {};             ///< by links: index of the link whose body carries it; −1 for the ground
   std::vector<AnyJoint> joints_ = {};         ///< by joints
+  std::vector<std::pair<Index, ElementHandle<TurnsLimit>>> turns_ = {};  ///< child links, and limits that count turns
 };
 
 }  // namespace polybody

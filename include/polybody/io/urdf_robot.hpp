@@ -28,11 +28,11 @@ struct UrdfMimic {
 
 /// Link of a robot.
 struct UrdfLink {
-  std::string name = {};                 ///< name in the file
-  Index line = 0;                        ///< line of the file, from 1; 0 if it was not found
-  Index joint = -1;                      ///< index of the joint that carries the link; −1 for the root
-  std::optional<Inertia> inertia = {};   ///< in the axes of the link; empty for a link without mass
-  Placement frame = {};                  ///< frame of the link at zero positions of all joints, in axes of the root
+  std::string name = {};                ///< name in the file
+  Index line = 0;                       ///< line of the file, from 1; 0 if it was not found
+  Index joint = -1;                     ///< index of the joint that carries the link; −1 for the root
+  std::optional<Inertia> inertia = {};  ///< in the axes of the link; empty for a link without mass
+  Placement frame = {};                 ///< frame of the link at zero positions of all joints, in axes of the root
 };
 
 /// Joint of a robot.
@@ -54,9 +54,9 @@ struct UrdfJoint {
 
 /// Robot of a URDF file. Parents come before their children: link 0 is the root.
 struct UrdfRobot {
-  std::string file = {};              ///< name of the file, for messages
-  std::string name = {};              ///< name of the robot
-  std::vector<UrdfLink> links = {};   ///< links in the order of the tree
+  std::string file = {};               ///< name of the file, for messages
+  std::string name = {};               ///< name of the robot
+  std::vector<UrdfLink> links = {};    ///< links in the order of the tree
   std::vector<UrdfJoint> joints = {};  ///< joints in the order of the links that they carry
 
   /// Index of a link. \throws InvalidInput for a name that no link has.

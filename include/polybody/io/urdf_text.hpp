@@ -93,7 +93,8 @@ class UrdfText {
   }
   std::string word() {
     std::size_t const begin = at_;
-    while (at_ < text_.size() && !is_blank(text_[at_]) && std::string_view("=/><\"'").find(text_[at_]) == std::string_view::npos)
+    while (at_ < text_.size() && !is_blank(text_[at_]) &&
+           std::string_view("=/><\"'").find(text_[at_]) == std::string_view::npos)
       step(1);
     return std::string(text_.substr(begin, at_ - begin));
   }

@@ -22,7 +22,9 @@ using dart::dynamics::FreeJoint;
 using dart::dynamics::Skeleton;
 using Eigen::Vector3d;
 
-std::ostream& operator<<(std::ostream& out, Vector3d const& v) { return out << ' ' << v[0] << ' ' << v[1] << ' ' << v[2]; }
+std::ostream& operator<<(std::ostream& out, Vector3d const& v) {
+  return out << ' ' << v[0] << ' ' << v[1] << ' ' << v[2];
+}
 
 /// Motion of all joints: sums without a pattern. Viscous damping acts as an applied force.
 void move(Skeleton& robot, std::vector<double> const& damping) {
@@ -117,9 +119,9 @@ std::string numbers(std::string const& file) {
   for (std::size_t i = 0; i < robot->getNumBodyNodes(); ++i) {
     BodyNode const& body = *robot->getBodyNode(i);
     Eigen::Isometry3d const& at = body.getWorldTransform();
-    out << "link " << body.getName() << Vector3d(at.translation()) << Vector3d(at.linear().col(0)) << Vector3d(at.linear().col(1))
-        << Vector3d(at.linear().col(2)) << body.getLinearVelocity() << body.getAngularVelocity()
-        << body.getCOMLinearAcceleration() << body.getAngularAcceleration() << '\n';
+    out << "link " << body.getName() << Vector3d(at.translation()) << Vector3d(at.linear().col(0))
+        << Vector3d(at.linear().col(1)) << Vector3d(at.linear().col(2)) << body.getLinearVelocity()
+        << body.getAngularVelocity() << body.getCOMLinearAcceleration() << body.getAngularAcceleration() << '\n';
   }
   return out.str();
 }

@@ -71,7 +71,7 @@ struct Inertia {
     return detail::turned(axes.transpose(), Mat3(tensor + detail::point_inertia(mass, point - centre)));
   }
 
-  /// The same part in outer axes, in which `placement` gives the origin and the axes of the part:
+  /// Inertia of this part in outer axes. `placement` is the frame of the part in these axes:
   ///   c' = r + R c,  J' = R J Rᵀ.
   template <class = void>  // compiled only if used
   Inertia placed(Placement const& placement) const {
