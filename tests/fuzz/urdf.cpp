@@ -1,5 +1,5 @@
-// URDF files. An accepted robot is a tree with parents before children, finite frames and possible inertias. Its model
-// has finite accelerations, or is refused by a message with the name of the file.
+// URDF files. An accepted robot is a tree with parents before children, finite frames and possible inertias. A message
+// of a refusal begins with the name of the file.
 // with: -lurdfdom_model
 // with: -lconsole_bridge
 #include <polybody/io/urdf_file.hpp>
