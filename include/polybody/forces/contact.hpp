@@ -2,6 +2,7 @@
 /// \file
 /// Contact between two markers: a geometry that computes the penetration, a normal force law and friction.
 
+#include <polybody/forces/contact_friction.hpp>
 #include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/forces/normal_force.hpp>
@@ -25,7 +26,19 @@ struct ContactPoint {
   Vec<T, 3> normal;               ///< (3) unit vector from b to a
   T depth;                        ///< penetration d > 0 [m]
   ContactBlend<T> handover = {};  ///< weight of the face; 1 if no other face is near
+  /// Number of the point's states, from 0 to `most_points` − 1. Points that exist at the same time have different
+  /// numbers, and a point keeps its number as the bodies move.
+  int slot = 0;
 };
+
+/// Number of contact points that a geometry can have at the same time: `G::most_points`, or 1 without this member.
+template <class G>
+constexpr int most_points() {
+  if constexpr (requires { G::most_points; })
+    return G::most_points;
+  else
+    return 1;
+}
 
 namespace detail {
 struct AnyPoint {
@@ -63,22 +76,58 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
-/// Regularised Coulomb friction −μ N v/√(v² + v_s²) at the slip velocity v. Bodies do not stick: under a tangential
-/// force F < μ N they creep with v = v_s F/√(μ²N² − F²).
-struct Friction {
-  double coefficient = 0.0;  ///< coefficient of friction μ [1]
-  double slip_speed = 0.0;   ///< v_s [m/s]; must be positive if μ is positive
-
-  void check(std::string const& name) const {
-    require_not_negative(coefficient, name, ": the coefficient of friction");
-    if (coefficient > 0.0) require_positive(slip_speed, name, ": the slip speed of the friction");
+namespace detail {
+/// Calls visit(point, v, N) for every contact point, with the velocity v of a relative to b at the point and the normal
+/// force N.
+template <StateScalar T, class G, class N, class Visit>
+void for_each_pressed_point(G const& geometry, N const& normal, std::array<Frame<T>, 2> const& f, Visit&& visit) {
+  auto const at_point = [&](ContactPoint<T> const& p) {
+    Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
+    Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
+    Vec<T, 3> v;
+    for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
+    visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
+  };
+  geometry.template for_each_point<T>(f[0], f[1], PointVisitor<T>(at_point));
+}
+/// Adds the wrenches of `force` (3) on a at `place` (3) and of the opposite force on b to w.
+template <StateScalar T>
+void act(Vec<T, 3> const& force, Vec<T, 3> const& place, std::array<Frame<T>, 2> const& f,
+         std::array<Wrench<T>, 2>& w) {
+  Vec<T, 3> const arm_a = place - f[0].r, arm_b = place - f[1].r;
+  Vec<T, 3> const of_a = arm_a.cross(force), of_b = arm_b.cross(force);
+  for (int i = 0; i < 3; ++i) {
+    w[0].f[i] += force[i];
+    w[1].f[i] -= force[i];
+    w[0].m[i] += of_a[i];
+    w[1].m[i] -= of_b[i];
   }
-};
+}
+/// Adds the wrenches of the force −U ∂share/∂place at a contact point whose weight varies with the position.
+template <StateScalar T, class N>
+void act_at_handover(N const& normal, ContactPoint<T> const& p, std::array<Frame<T>, 2> const& f,
+                     std::array<Wrench<T>, 2>& w) {
+  if (!(value_of(p.handover.share) < 1.0)) return;
+  Vec<T, 3> const& s = p.handover.slope;
+  T const stored = -normal.template potential<T>(p.depth);
+  act<T>({s[0] * stored, s[1] * stored, s[2] * stored}, p.handover.place, f, w);
+}
+/// Potential energy of the normal forces at all contact points [J].
+template <class G, class N>
+double potential_of_points(G const& geometry, N const& normal, std::array<Frame<double>, 2> const& f) {
+  double sum = 0.0;
+  auto const at_point = [&](ContactPoint<double> const& p) {
+    sum += normal.template potential<double>(p.depth) * p.handover.share;
+  };
+  geometry.template for_each_point<double>(f[0], f[1], PointVisitor<double>(at_point));
+  return sum;
+}
+}  // namespace detail
 
 /// Contact force between two markers: N n + F_t on a at each contact point, with the normal force N, the normal n and
 /// the friction F_t. The opposite force acts on b. The velocity of either body is that of its material point at the
 /// contact point.
-template <ContactGeometry G, NormalForce N = SpringDamperContact>
+template <ContactGeometry G, NormalForce N = SpringDamperContact, ContactFriction F = Friction>
 struct Contact {
   using Geometry = G;  ///< type of the geometry
   static constexpr int markers = 2;
@@ -91,9 +140,9 @@ struct Contact {
       return G::needs;
   }();
 
-  G geometry;              ///< contact geometry
-  N normal;                ///< normal force law
-  Friction friction = {};  ///< regularised Coulomb friction
+  G geometry;       ///< contact geometry
+  N normal;         ///< normal force law
+  F friction = {};  ///< friction law
 
   void check(std::string const& name) const {
     geometry.check(name);
@@ -124,25 +173,16 @@ struct Contact {
   /// normal force N.
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
-    auto const at_point = [&](ContactPoint<T> const& p) {
-      Vec<T, 3> const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
-      Vec<T, 3> const turn_a = f[0].w.cross(arm_a), turn_b = f[1].w.cross(arm_b);
-      Vec<T, 3> v;
-      for (int i = 0; i < 3; ++i) v[i] = (f[0].v[i] + turn_a[i]) - (f[1].v[i] + turn_b[i]);
-      visit(p, v, T(normal.template force<T>(p.depth, T(-v.dot(p.normal))) * p.handover.share));
-    };
-    geometry.template for_each_point<T>(f[0], f[1], detail::PointVisitor<T>(at_point));
+    detail::for_each_pressed_point<T>(geometry, normal, f, visit);
   }
 
   /// Force on a at a contact point [N], with the velocity v (3) of a relative to b [m/s] and the normal force n [N].
   template <StateScalar T>
   Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
-    using std::sqrt;
     Vec<T, 3> force(p.normal[0] * n, p.normal[1] * n, p.normal[2] * n);
     if (friction.coefficient > 0.0) {
       Vec<T, 3> const slip = detail::shifted<T>(v, p.normal, -v.dot(p.normal));
-      T const speed2 = slip.dot(slip) + friction.slip_speed * friction.slip_speed;
-      force = detail::shifted<T>(force, slip, -(n * friction.coefficient / sqrt(speed2)));
+      force = detail::shifted<T>(force, slip, -friction.template resistance<T>(slip.dot(slip), n));
     }
     return force;
   }
@@ -150,23 +190,9 @@ struct Contact {
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
     std::array<Wrench<T>, 2> w;
-    auto const act = [&](Vec<T, 3> const& force, Vec<T, 3> const& place) {
-      Vec<T, 3> const arm_a = place - f[0].r, arm_b = place - f[1].r;
-      Vec<T, 3> const of_a = arm_a.cross(force), of_b = arm_b.cross(force);
-      for (int i = 0; i < 3; ++i) {
-        w[0].f[i] += force[i];
-        w[1].f[i] -= force[i];
-        w[0].m[i] += of_a[i];
-        w[1].m[i] -= of_b[i];
-      }
-    };
     for_each_point(f, [&](ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) {
-      if (value_of(n) > 0.0) act(force_at(p, v, n), p.place);
-      if (value_of(p.handover.share) < 1.0) {
-        Vec<T, 3> const& s = p.handover.slope;
-        T const stored = -normal.template potential<T>(p.depth);
-        act({s[0] * stored, s[1] * stored, s[2] * stored}, p.handover.place);
-      }
+      if (value_of(n) > 0.0) detail::act<T>(force_at(p, v, n), p.place, f, w);
+      detail::act_at_handover<T>(normal, p, f, w);
     });
     return w;
   }
@@ -185,7 +211,7 @@ struct Contact {
       double along = 0.0;
       if (friction.coefficient > 0.0) {
         double const vn = v.dot(p.normal), speed2 = v.dot(v) - vn * vn;
-        along = cd * friction.coefficient * n / std::sqrt(speed2 + friction.slip_speed * friction.slip_speed);
+        along = friction.slope(speed2, n, cd);
       }
       add(p, across, along, f[0].r, of_a);
       add(p, across, along, f[1].r, of_b);
@@ -193,12 +219,7 @@ struct Contact {
   }
 
   double potential(std::array<Frame<double>, 2> const& f, double) const {
-    double sum = 0.0;
-    auto const at_point = [&](ContactPoint<double> const& p) {
-      sum += normal.template potential<double>(p.depth) * p.handover.share;
-    };
-    geometry.template for_each_point<double>(f[0], f[1], detail::PointVisitor<double>(at_point));
-    return sum;
+    return detail::potential_of_points(geometry, normal, f);
   }
 
  private:

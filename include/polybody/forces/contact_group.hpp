@@ -23,6 +23,9 @@ template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
  public:
+  static_assert(((states_of<Laws>() == 0) && ...),
+                "The contacts of a ContactGroup have no first-order states. Apply each contact with BristleFriction on "
+                "its own, model.apply(contact, marker_a, marker_b).");
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = std::max({Laws::needs...});

@@ -91,8 +91,9 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
   { force.potential(frames, t) } -> std::convertible_to<double>;
 };
 
-/// Force element with first-order states z that stores energy: its potential energy [J], a function of frames, z and
-/// time, and the power −∂V/∂z · ż that its states dissipate [W].
+/// Force element with first-order states z that stores energy: its potential energy U [J], a function of frames, z and
+/// time, and the power −(w₀·V + U̇) that it dissipates at the twists V [W]. The wrenches w₀ are those at zero twists. If
+/// w₀ = −∂U/∂pose, the power is −∂U/∂z · ż.
 template <class F>
 concept HasStatePotential = HasStates<F> && requires(F const force, std::array<Frame<double>, F::markers> const frames,
                                                      std::array<double, states_of<F>()> const z, double t) {

@@ -221,7 +221,7 @@ struct ConservingStep {
         detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       problem.move();
       for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
-      system.push_forces();  // not evaluated by the discrete gradients
+      system.push_forces(w.lambda);  // not evaluated by the discrete gradients
       w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver.lost_rank() || effort == 2) w.reused_factorisation.usable = false;

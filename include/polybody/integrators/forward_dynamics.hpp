@@ -154,6 +154,7 @@ class ForwardDynamics {
     solve(system, -1.0, -1.0);
     take(0, system.velocities(), a);
     take(system.velocities(), system.rows(), lambda);
+    if (!system.data().multipliers.empty()) follow_reactions(system, a, lambda);
   }
 
   /// Applies to v the smallest change (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
@@ -296,6 +297,26 @@ class ForwardDynamics {
     a.resize(system.velocities());
     Index const bad = c->accelerations(at.q, at.v, system.load_factor, residual, a);
     return bad < 0 && first_not_finite(a) < 0;
+  }
+
+  /// Repeats the solution of `accelerations` until the forces that follow reactions belong to λ. \throws NewtonConvergenceFailure
+  [[gnu::cold]] void follow_reactions(System& system, VecX& a, VecX& lambda) {
+    for (int k = 0; k < 200; ++k) {
+      open_ = lambda;
+      system.residual(zero_a_, open_, r_);
+      system.rows_transposed_times(open_, delta_);
+      r_ -= delta_;
+      detail::require_finite_force(system, r_);
+      solve(system, -1.0, -1.0);
+      take(0, system.velocities(), a);
+      take(system.velocities(), system.rows(), lambda);
+      open_ -= lambda;
+      if (largest_size(open_) <= 1e-12 * largest_size(lambda)) return;
+    }
+    throw NewtonConvergenceFailure("motion.friction", {"The reactions at t = ", ErrorTime{system.at().t},
+                                           " s do not converge with the ", ErrorObject{"friction"},
+                                           " that follows them: the friction locks the mechanism. Use a smaller "
+                                           "coefficient, or an implicit integrator."});
   }
 
   /// Solver of [M, Gᵀ; G, 0]. If the matrix has constant parts, the solver factorises them only once.

@@ -66,6 +66,9 @@ System system_for(M const& model) {
                   "GeneralisedAlpha.");
     static_assert(CompatibilityReport::elements,
                   "EnergyMomentum and EnergyDecaying do not support force groups. Use GeneralisedAlpha.");
+    static_assert(CompatibilityReport::reactions,
+                  "EnergyMomentum and EnergyDecaying do not support friction that follows the multipliers of a joint. "
+                  "Use GeneralisedAlpha.");
     static_assert(CompatibilityReport::potentials,
                   "EnergyMomentum and EnergyDecaying need the potential of a force for general scalars: declare "
                   "potential(frames, t) as a template on the scalar type of the frames.");

@@ -79,7 +79,7 @@ class AxialForceMonitor {
         wrench_at(block, *end, block.multiplier(x.lambda), w);
         add(system, end->marker, w, -1.0);
       }
-    system.push_forces();
+    system.push_forces(x.lambda);
     for (AppliedWrench<double> const& action : system.data().actions) add(system, action.marker, action.w, 1.0);
   }
   /// Adds sign · w to the loads of the marker's body; w = [f; m] about the marker, in world axes.

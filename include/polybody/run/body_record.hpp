@@ -142,7 +142,7 @@ class LoadRecorderOf {
         wrench_at(block, *end, block.multiplier(x.lambda), w);
         add_load(end->marker, w, -1.0);
       }
-    system_.push_forces();
+    system_.push_forces(x.lambda);
     for (AppliedWrench<double> const& action : system_.data().actions) add_load(action.marker, action.w, 1.0);
   }
 

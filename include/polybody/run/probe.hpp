@@ -108,7 +108,7 @@ class Probe {
   template <class = void>
   System& with_forces(State const& x) {
     System& s = evaluated(x);
-    if (!has_forces_) s.push_forces();
+    if (!has_forces_ || !s.data().multipliers.empty()) s.push_forces(x.lambda);
     has_forces_ = true;
     return s;
   }

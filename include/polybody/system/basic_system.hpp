@@ -243,8 +243,12 @@ class BasicSystem {
 
   /// r = M a − f + Gᵀλ (nv).
   void residual(Vector const& a, Vector const& lambda, Vector& r);
-  /// Writes the wrenches and state rates of the force elements to `data()`. `residual` also updates them.
-  void push_forces() { operations_->push_forces(t_, data_); }
+  /// Writes the wrenches and state rates of the force elements to `data()`, for the multipliers λ (rows) of the full
+  /// model. `residual` also updates them. The tangent belongs to the last λ.
+  void push_forces(Vector const& lambda) {
+    for (std::size_t i = 0; i < data_.multipliers.size(); ++i) data_.multipliers[i] = lambda[Index(i)];
+    operations_->push_forces(t_, data_);
+  }
   /// `phi` = Φ (rows), the constraint violation; zero for nonholonomic equations.
   void violation(Vector& phi);
   /// `rate` = Φ̇ = G v + Φ_t (rows).

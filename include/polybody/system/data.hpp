@@ -143,6 +143,7 @@ struct Data {
   Sequence<ConstraintBlock<T>> rows;      ///< constraint blocks of all joints, and of bodies with own equations
   Sequence<AppliedWrench<T>> actions;     ///< wrenches: one for each marker of each force element
   Sequence<T> states, rates;              ///< first-order states z of force elements, and ż
+  Sequence<T> multipliers;                ///< λ for elements that follow a reaction; empty if there are none
   Index first_state = 0;                  ///< index of the first state z among the velocities
 
   Sequence<Wrench<double>> loads;             ///< wrench on each marker in the residual, for second-order terms

@@ -2,7 +2,7 @@
 /// \file
 /// Derivatives of the wrenches of a force element, or of one pair of a force group, as blocks of the tangent.
 
-#include <polybody/forces/force_states.hpp>
+#include <polybody/forces/reaction_force.hpp>
 #include <polybody/system/joint_kernels.hpp>
 
 namespace polybody::detail {
@@ -51,14 +51,15 @@ void add_gradient(L const& law, std::array<Index, L::markers> const& at, Gradien
 
 /// Overload for a force element with wrenches w and first-order states z, ż = h. With the poses p of the markers, it
 /// adds the blocks −Jᵀ ∂w/∂p J, −Jᵀ ∂w/∂z, −∂h/∂p J and cm − ∂h/∂z, each with its coefficient.
-template <HasStates F>
-void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
+/// \param law the force element of the entry, or its adapter for constant multipliers
+template <HasStates F, HasStates L>
+void add_gradient(ForceEntry<F> const& e, L const& law, GradientAt const& x, Data<double>& data, BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
   auto const frames = frames_at(e.markers, data);
   auto const z = states_in(e, data);
-  Mat<double, size, size> s = gradient_with_states(e.force, frames, z, x.t, {x.c.stiffness, x.c.damping, x.c.states});
+  Mat<double, size, size> s = gradient_with_states(law, frames, z, x.t, {x.c.stiffness, x.c.damping, x.c.states});
   if (x.c.exact && x.c.stiffness != 0.0) {
-    Mat<double, size, size> const by_twist = gradient_with_states(e.force, frames, z, x.t, {0.0, x.c.stiffness, 0.0});
+    Mat<double, size, size> const by_twist = gradient_with_states(law, frames, z, x.t, {0.0, x.c.stiffness, 0.0});
     for (int k = 0; k < n; ++k)
       add_rates_of_pose<size>(data.markers[std::size_t(e.markers[std::size_t(k)])], by_twist.data() + 6 * size * k,
                               s.data() + 6 * size * k);
@@ -81,8 +82,45 @@ void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& dat
     sink.add(at, p.first, pulled<m>(p, entries + first + 6 * size * k, size, 1, data.scratch).transposed());
   }
   sink.add(at, at, BlockView(entries + (size + 1) * first, m, m, 1, size));
-  if (x.c.full)
-    add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
+  if (x.c.full) add_loads(AtStates<L, double>{law, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
+}
+
+/// Adds the blocks −Jᵀ ∂w/∂λ and −∂h/∂λ of a force element that follows the multipliers λ of a joint, with its wrenches
+/// w and state rates h, in the columns of λ.
+template <FollowsReaction F>
+void add_multiplier_columns(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
+  constexpr int n = 6 * F::markers, m = F::multipliers, s = states_of<F>();
+  using D = Dual<m>;
+  std::array<Frame<D>, F::markers> frames;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    Frame<double> const& f = data.markers[std::size_t(e.markers[k])].frame;
+    for (int i = 0; i < 3; ++i) {
+      frames[k].r[i] = D(f.r[i]);
+      frames[k].v[i] = D(f.v[i]);
+      frames[k].w[i] = D(f.w[i]);
+      for (int j = 0; j < 3; ++j) frames[k].A(i, j) = D(f.A(i, j));
+    }
+  }
+  Vec<D, m> lambda;
+  for (int i = 0; i < m; ++i) lambda[i] = seeded<m>(data.multipliers[std::size_t(e.row + i)], i, 1.0);
+  std::array<D, std::size_t(s)> z;
+  for (std::size_t i = 0; i < z.size(); ++i) z[i] = D(data.states[std::size_t(e.state) + i]);
+  Mat<double, n, m> w;
+  copy_slopes(e.force.template wrenches<D>(frames, lambda, z, x.t), w);
+  for (Index i = 0; i < w.size(); ++i) w.data()[i] *= -x.scale;
+  Index const row = data.unknown_of_row(e.row), at = data.first_state + e.state;
+  for (int k = 0; k < F::markers; ++k) {
+    MarkerKinematics<double> const& p = data.markers[std::size_t(e.markers[std::size_t(k)])];
+    if (p.columns > 0) sink.add(p.first, row, pulled<m>(p, w.data() + 6 * k, 1, n, data.scratch));
+  }
+  if constexpr (s > 0) {
+    Mat<double, s, m> h;
+    auto const rates = e.force.template rates<D>(frames, lambda, z, x.t);
+    for (int i = 0; i < s; ++i)
+      for (int j = 0; j < m; ++j) h(i, j) = -rates[std::size_t(i)].d[j];
+    sink.add(at, row, BlockView(h.data(), s, m, 1, s));
+    sink.skip(row, at, m, s);
+  }
 }
 
 /// Adds to `to[k]` the stiffness of marker k of a pair with respect to the motion of this marker, without x.scale. If

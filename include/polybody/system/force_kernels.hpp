@@ -41,11 +41,23 @@ namespace polybody {
 
 namespace detail {
 
+/// Calls use(law) with the force element of an entry, or with its adapter at the multipliers that it follows.
+template <class F, StateScalar T, class Use>
+void with_law(ForceEntry<F> const& e, T const* multipliers, Use&& use) {
+  if constexpr (FollowsReaction<F>) {
+    Vec<T, F::multipliers> lambda;
+    for (int i = 0; i < F::multipliers; ++i) lambda[i] = multipliers[e.row + i];
+    use(AtMultipliers<F, T>{e.force, lambda});
+  } else {
+    use(e.force);
+  }
+}
+
 /// Calls visit(force, markers, at) for an entry's force element at its present states, or for each pair of a group that
 /// may interact in the present positions. `markers` are marker indices within the entry, `at` marker indices in the
-/// model.
+/// model. \param multipliers λ of the model, read only for elements that follow a reaction
 template <class F, StateScalar T, class Visit>
-void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
+void for_each_action(ForceEntry<F> const& e, Data<T> const& data, T const* multipliers, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
     PairFrames<F, T> const frame(e, data);
     e.force.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
@@ -54,13 +66,20 @@ void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit)
   } else {
     std::array<Index, F::markers> all;
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = Index(k);
-    if constexpr (HasStates<F>) {
-      auto const z = states_in(e, data);
-      visit(AtStates<F, T>{e.force, z}, all, e.markers);
-    } else {
-      visit(e.force, all, e.markers);
-    }
+    with_law(e, multipliers, [&]<class L>(L const& law) {
+      if constexpr (HasStates<F>) {
+        auto const z = states_in(e, data);
+        visit(AtStates<L, T>{law, z}, all, e.markers);
+      } else {
+        visit(law, all, e.markers);
+      }
+    });
   }
+}
+/// Overload for the multipliers of the last evaluation.
+template <class F, StateScalar T, class Visit>
+void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
+  for_each_action(e, data, data.multipliers.data(), visit);
 }
 
 template <std::size_t n>
@@ -145,8 +164,9 @@ struct ForceKernels {
                        BlockSink& sink);
   /// Stored energy of all elements with a potential [J].
   static double energy(Pool const& pool, double t, Data<double> const& data);
-  /// Adds the powers of all elements [W]. Loads are multiplied by `load_factor`.
-  static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
+  /// Adds the powers of all elements at the multipliers `lambda` [W]. Loads are multiplied by `load_factor`.
+  static void add_powers(Pool const& pool, double t, double load_factor, VecX const& lambda, Data<double> const& data,
+                         Powers& p);
 
  private:
   /// Evaluates the wrenches of a group in several threads. Each thread evaluates a part of the many markers. Wrenches
@@ -172,6 +192,7 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
       out.forces.back().states = F::states;
     }
     out.forces.back().stores = detail::stores<F>();
+    if constexpr (FollowsReaction<F>) out.forces.back().row = e.row;
     out.forces.back().made_in = e.made_in;
     out.forces.back().stores_in_part = ForceGroup<F> && !detail::stores<F>();
     if constexpr (requires { e.force.is_lossless(); }) out.forces.back().lossless = e.force.is_lossless();
@@ -185,7 +206,14 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
         std::copy_n(of.markers.begin(), at.size(), at.begin());
         std::array<double, F::states> z;
         std::copy_n(data.states.begin() + (of.v0 - data.first_state), z.size(), z.begin());
-        return double(static_cast<F const*>(of.force)->dissipation(detail::frames_at(at, data), z, time));
+        F const& law = *static_cast<F const*>(of.force);
+        if constexpr (FollowsReaction<F>) {
+          Vec<double, F::multipliers> lambda;
+          for (int i = 0; i < F::multipliers; ++i) lambda[i] = data.multipliers[std::size_t(of.row + i)];
+          return double(law.dissipation(detail::frames_at(at, data), lambda, z, time));
+        } else {
+          return double(law.dissipation(detail::frames_at(at, data), z, time));
+        }
       };
     if constexpr (requires { e.force.law; }) detail::add_breakpoints(e.force.law, out.breakpoints);
   }
@@ -205,6 +233,12 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
       for (Index const k : e.markers)
         data.scratch.resize(
             std::max(data.scratch.size(), std::size_t(F::states * data.markers[std::size_t(k)].columns)));
+    }
+    if constexpr (FollowsReaction<F>) {
+      data.multipliers.resize(std::max(data.multipliers.size(), std::size_t(e.row + F::multipliers)));
+      for (Index const k : e.markers)
+        data.scratch.resize(
+            std::max(data.scratch.size(), std::size_t(F::multipliers * data.markers[std::size_t(k)].columns)));
     }
     data.own_stiffness.resize(std::max(data.own_stiffness.size(), e.markers.size()));
     ++owner;
@@ -228,10 +262,11 @@ AppliedWrench<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& 
       for (std::size_t k = 0; k < to.size(); ++k) to[k] = actions + markers[k];
       detail::add_wrenches(law, at, t, data, to);
     });
-    if constexpr (HasStates<F>) {
-      auto const rates = e.force.template rates<T>(detail::frames_at(e.markers, data), detail::states_in(e, data), t);
-      std::copy(rates.begin(), rates.end(), data.rates.begin() + e.state);
-    }
+    if constexpr (HasStates<F>)
+      detail::with_law(e, data.multipliers.data(), [&](auto const& law) {
+        auto const rates = law.template rates<T>(detail::frames_at(e.markers, data), detail::states_in(e, data), t);
+        std::copy(rates.begin(), rates.end(), data.rates.begin() + e.state);
+      });
   }
   return next;
 }
@@ -274,11 +309,15 @@ void ForceKernels<F, T>::tangents(Pool const& pool, double t, double load_factor
                                   Data<double>& data, BlockSink& sink) {
   detail::GradientAt const x{t, F::is_load ? load_factor : 1.0, c};
   for (Entry const& e : pool)
-    if constexpr (HasStates<F>)
-      detail::add_gradient(e, x, data, sink);
-    else if constexpr (!ForceGroup<F>)
-      detail::add_gradient(e.force, e.markers, x, data, sink);
-    else if (c.exact || (c.full && c.mass == 0.0))  // the second condition: statics and linearisation
+    if constexpr (!ForceGroup<F>) {
+      detail::with_law(e, data.multipliers.data(), [&](auto const& law) {
+        if constexpr (HasStates<F>)
+          detail::add_gradient(e, law, x, data, sink);
+        else
+          detail::add_gradient(law, e.markers, x, data, sink);
+      });
+      if constexpr (FollowsReaction<F>) detail::add_multiplier_columns(e, x, data, sink);
+    } else if (c.exact || (c.full && c.mass == 0.0))  // the second condition: statics and linearisation
       coupled_tangent(e, x, data, sink);
     else
       group_tangent(e, x, data, sink);
@@ -294,12 +333,13 @@ double ForceKernels<F, T>::energy(Pool const& pool, double t, Data<double> const
 }
 
 template <class F, StateScalar T>
-void ForceKernels<F, T>::add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data,
-                                    Powers& p) {
+void ForceKernels<F, T>::add_powers(Pool const& pool, double t, double load_factor, VecX const& lambda,
+                                    Data<double> const& data, Powers& p) {
   double const scale = F::is_load ? load_factor : 1.0;
   for (Entry const& e : pool)
-    detail::for_each_action(
-        e, data, [&](auto const& law, auto const&, auto const& at) { detail::add_power(law, at, t, scale, data, p); });
+    detail::for_each_action(e, data, lambda.data(), [&](auto const& law, auto const&, auto const& at) {
+      detail::add_power(law, at, t, scale, data, p);
+    });
 }
 
 template <class F, StateScalar T>

@@ -36,6 +36,19 @@ constexpr void require_joint_coordinate() {
                 "of the first one.");
 }
 
+/// Refuses at compile time a force F that follows another type of joint than J, or multipliers in a model that
+/// `eliminates` unknowns.
+template <class F, class J, bool eliminates>
+constexpr void require_followed() {
+  static_assert(std::is_same_v<typename F::FollowedJoint, J>,
+                "This friction follows the reaction of another type of joint. Its first template argument must be the "
+                "type of the joint to which it is applied.");
+  static_assert(
+      !eliminates || F::multipliers == 0,
+      "Friction that follows multipliers needs a model without eliminated unknowns: use Constraint instead of "
+      "JointCoordinates and AncfLinear in all joints of the model.");
+}
+
 /// Axis of a joint's coordinate among the axes of its markers. \throws InvalidInput naming the force if the joint has
 /// no such coordinate, or several.
 template <class J>

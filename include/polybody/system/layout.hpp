@@ -180,6 +180,7 @@ struct ForceLayout {
   std::uint64_t made_in = 0;     ///< serial number of the model to which the force was added
   bool stores_in_part = false;   ///< true for a group in which not all laws have a potential
   bool lossless = false;         ///< true if its potential stores all work that is done on the element
+  Index row = -1;                ///< first multiplier on which it depends; −1 for none
   /// For a contact of two markers a and b: returns true if they touch during a step from the frames `from` [a, b] to
   /// the frames `to` [a, b], but not at the ends of the step. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;

@@ -277,7 +277,7 @@ class ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> : public
     Powers p;
     ((p.dissipated += BodyKernels<Bs, T>::dissipated(bodies<Bs>(), of_bodies<Bs>(data), at, backwards)), ...);
     (JointKernels<Js, T>::add_powers(joints<Js>(), of_joints<Js>(data), lambda, data, p), ...);
-    (ForceKernels<Fs, T>::add_powers(forces<Fs>(), at.t, load_factor, data, p), ...);
+    (ForceKernels<Fs, T>::add_powers(forces<Fs>(), at.t, load_factor, lambda, data, p), ...);
     return p;
   }
 

@@ -73,6 +73,7 @@ struct ForceEntry {
   std::string name;
   Index state = 0;            ///< index of its first state among the model's first-order states
   std::uint64_t made_in = 0;  ///< serial number of the model to which the force was added
+  Index row = -1;             ///< first multiplier that the force follows; −1 for none
 };
 template <ForceGroup F>
 struct ForceEntry<F> {

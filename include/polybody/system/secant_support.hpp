@@ -3,6 +3,7 @@
 /// Requirements of energy-conserving integration on bodies, policies and forces.
 
 #include <polybody/bodies/shared/node_chain.hpp>
+#include <polybody/forces/reaction_force.hpp>
 #include <polybody/math/secant.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/pools.hpp>
@@ -42,8 +43,9 @@ struct SecantSupportOf<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEnt
   static constexpr bool policies = (HasMeanMultiplier<typename Js::PolicyType> && ...);
   static constexpr bool positions = ((nonholonomic_equations<typename Js::Geometry>() == 0) && ...);
   static constexpr bool elements = !(ForceGroup<Fs> || ...);
+  static constexpr bool reactions = !(FollowsReaction<Fs> || ...);
   static constexpr bool potentials = (gives_secants<Fs>() && ...);
-  static constexpr bool all = bodies && policies && positions && elements && potentials;
+  static constexpr bool all = bodies && policies && positions && elements && reactions && potentials;
 };
 
 }  // namespace detail

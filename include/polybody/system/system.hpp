@@ -148,7 +148,7 @@ void BasicSystem<T>::full_residual(Vector const& a, Vector const& lambda, Vector
   for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
   operations_->element_forces(at(), a, load_factor, data_, r);
   add_row_forces(data_, lambda, r);
-  push_forces();
+  push_forces(lambda);
   add_actions(data_, layout_, load_factor, r);
   for (std::size_t i = 0; i < data_.rates.size(); ++i) {
     Index const k = data_.first_state + Index(i);

@@ -14,6 +14,7 @@ namespace polybody::laws {
 ///     struct SpringCase {
 ///       static SpringDamper force();
 ///       static std::array<Frame<double>, 2> frames(Numbers&);  // optional; the default is random frames
+///       static std::array<double, 1> states(Numbers&);         // optional; the default is random numbers in [−1, 1]
 ///     };
 ///     bool const spring_obeys = obeys<SpringCase, ForceLaws>("Spring");
 template <class Case>
@@ -39,9 +40,11 @@ struct ForceLaws {
       return all;
     }
   }
-  /// Random states in [−1, 1].
-  std::array<double, std::size_t(states_of<F>())> some_states() {
-    std::array<double, std::size_t(states_of<F>())> some{};
+  using States = std::array<double, std::size_t(states_of<F>())>;  ///< first-order states
+  /// States from the case, or random states in [−1, 1] if the case has no function `states`.
+  States some_states() {
+    if constexpr (requires { Case::states(number); }) return Case::states(number);
+    States some{};
     for (double& x : some) x = number();
     return some;
   }
@@ -132,21 +135,69 @@ struct ForceLaws {
     EXPECT_LT((stacked(elsewhere).tail(states) - stacked(f).tail(states)).norm(), 1e-12 * size);
   }
 
-  /// w = −∂U/∂pose at rest, for an element with a potential.
+  /// Stored energy at the frames f and the states y.
+  double energy(Frames const& f, States const& y) const {
+    if constexpr (HasStates<F>)
+      return force.potential(f, y, t);
+    else
+      return force.potential(f, t);
+  }
+  /// Power Σ w·V of the element bound to the states z, with the twists V of the frames f.
+  double power(Frames const& f, Frames const& with_twists) const {
+    double sum = 0.0;
+    auto const w = wrenches(f);
+    for (std::size_t k = 0; k < f.size(); ++k) sum += w[k].f.dot(with_twists[k].v) + w[k].m.dot(with_twists[k].w);
+    return sum;
+  }
+  /// Rate of the stored energy along the twists of the frames f and the rates of the states.
+  double energy_rate(Frames const& f) const {
+    return slope_at_zero(
+        [&](double h) {
+          Frames near = f;
+          for (Frame<double>& x : near) x = later(x, h);
+          States y = z;
+          if constexpr (HasStates<F>) {
+            auto const rates = force.template rates<double>(f, z, t);
+            for (std::size_t s = 0; s < y.size(); ++s) y[s] += h * rates[s];
+          }
+          return energy(near, y);
+        },
+        1e-4);
+  }
+  static Frames at_rest(Frames f) {
+    for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
+    return f;
+  }
+
+  /// w = −∂U/∂pose − (∂ż/∂V)ᵀ ∂U/∂z at rest, for an element with a potential U. The last term exists for states z whose
+  /// rates depend on the twists V.
   void wrenches_at_rest_are_the_slope_of_the_potential() {
     if constexpr (stores) {
-      Frames f = frames();
-      for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
+      Frames const f = at_rest(frames());
       VecX const w = stacked(f).head(6 * markers);
-      EXPECT_GT(w.norm(), 0.0);
+      if (energy(f, z) != 0.0) {
+        EXPECT_GT(w.norm(), 0.0);
+      }
+      VecX by_states = VecX::Zero(6 * markers);
+      if constexpr (HasStates<F>) {
+        auto const gradient = gradient_with_states(force, f, z, t, {0.0, 1.0, 0.0});
+        for (std::size_t s = 0; s < z.size(); ++s) {
+          double const slope = slope_at_zero([&](double h) {
+            States near = z;
+            near[s] += h;
+            return energy(f, near);
+          });
+          for (Index j = 0; j < 6 * markers; ++j) by_states[j] += slope * gradient(6 * markers + Index(s), j);
+        }
+      }
       for (Index j = 0; j < w.size(); ++j) {
         double const slope = slope_at_zero([&](double h) {
           Frames near = f;
           Frame<double>& one = near[std::size_t(j / 6)];
           one = moved<double>(one, Vec6(Vec6::Unit(j % 6) * h));
-          return double(law().potential(near, t));
+          return energy(near, z);
         });
-        EXPECT_NEAR(w[j], -slope, 1e-7 * (1.0 + w.norm())) << j;
+        EXPECT_NEAR(w[j], -slope - by_states[j], 1e-7 * (1.0 + w.norm())) << j;
       }
     }
   }
@@ -157,19 +208,19 @@ struct ForceLaws {
     if constexpr (stores) {
       for (int i = 0; i < 10; ++i) {
         Frames const f = frames();
-        double power = 0.0;
-        for (std::size_t k = 0; k < f.size(); ++k) {
-          Wrench<double> const w = wrenches(f)[k];
-          power += w.f.dot(f[k].v) + w.m.dot(f[k].w);
-        }
-        double const rate = slope_at_zero(
-            [&](double h) {
-              Frames near = f;
-              for (Frame<double>& x : near) x = later(x, h);
-              return double(law().potential(near, t));
-            },
-            1e-4);
-        EXPECT_LT(power + rate, 1e-6 * (1.0 + std::abs(power)));
+        double const given = power(f, f);
+        EXPECT_LT(given + energy_rate(f), 1e-6 * (1.0 + std::abs(given)));
+      }
+    }
+  }
+
+  /// `dissipation` = −(w₀·V + U˙) for an element with states and a potential U, with the wrenches w₀ at rest.
+  void dissipation_is_the_lost_power() {
+    if constexpr (HasStatePotential<F>) {
+      for (int i = 0; i < 10; ++i) {
+        Frames const f = frames();
+        double const lost = -power(at_rest(f), f) - energy_rate(f);
+        EXPECT_NEAR(force.dissipation(f, z, t), lost, 1e-6 * (1.0 + std::abs(lost)));
       }
     }
   }
@@ -181,7 +232,8 @@ struct ForceLaws {
       {"ActionIsReaction", &ForceLaws::action_is_reaction, internal},
       {"RigidMotionTurnsTheWrenches", &ForceLaws::rigid_motion_turns_the_wrenches, internal},
       {"WrenchesAtRestAreTheSlopeOfThePotential", &ForceLaws::wrenches_at_rest_are_the_slope_of_the_potential, stores},
-      {"GivesBackNoMoreThanItsPotential", &ForceLaws::gives_back_no_more_than_its_potential, stores}};
+      {"GivesBackNoMoreThanItsPotential", &ForceLaws::gives_back_no_more_than_its_potential, stores},
+      {"DissipationIsTheLostPower", &ForceLaws::dissipation_is_the_lost_power, HasStatePotential<F>}};
 };
 
 }  // namespace polybody::laws

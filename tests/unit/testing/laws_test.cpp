@@ -137,9 +137,19 @@ struct Gushing {
   static Gusher force() { return Gusher::with_energy(); }
 };
 
+struct HalfLost : MaxwellElement {
+  double dissipation(std::array<Frame<double>, 2> const& f, std::array<double, 1> const& z, double t) const {
+    return 0.5 * MaxwellElement::dissipation(f, z, t);
+  }
+};
+struct Losing {
+  static HalfLost force() { return {{.stiffness = 80.0, .damping = 3.0, .free_length = 0.7}}; }
+};
+
 TEST(ForceLaws, TellWhatIsWrong) {
   EXPECT_EQ(broken<ForceLaws<Spring>>(), Names{});
   EXPECT_EQ(broken<ForceLaws<Gushing>>(), Names{"GivesBackNoMoreThanItsPotential"});
+  EXPECT_EQ(broken<ForceLaws<Losing>>(), Names{"DissipationIsTheLostPower"});
   Names const one_sided = broken<ForceLaws<OneSided>>();
   ASSERT_FALSE(one_sided.empty());
   EXPECT_EQ(one_sided.front(), "ActionIsReaction");
@@ -202,7 +212,11 @@ struct Push {
   static PointForce<> force() { return {.force = {Vec3(3.0, -1.0, 2.0)}}; }
 };
 bool const push_obeys = obeys<Push, ForceLaws>("Push");
+struct Maxwell {
+  static MaxwellElement force() { return {.stiffness = 80.0, .damping = 3.0, .free_length = 0.7}; }
+};
 bool const spring_obeys = obeys<Spring, ForceLaws>("Spring");
+bool const maxwell_obeys = obeys<Maxwell, ForceLaws>("Maxwell");
 
 /// A free mass without tangent and constraint equations.
 struct FreeMass {
@@ -239,7 +253,8 @@ TEST(Laws, ThatDoNotApplyHaveNoTest) {
             laws_of<BodyLaws<Block>>({"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",
                                       "ReferenceStandsWhereTheBarIsPlaced", "PointsOutsideTheBarAreRefused"}));
   EXPECT_EQ(tests_of("Push/ForceLaws"), (Names{"GradientIsTheDerivativeOfTheWrenches", "AsksNoMoreThanItSays"}));
-  EXPECT_EQ(tests_of("Spring/ForceLaws"), laws_of<ForceLaws<Spring>>());
+  EXPECT_EQ(tests_of("Spring/ForceLaws"), laws_of<ForceLaws<Spring>>({"DissipationIsTheLostPower"}));
+  EXPECT_EQ(tests_of("Maxwell/ForceLaws"), laws_of<ForceLaws<Maxwell>>());
   EXPECT_EQ(tests_of("FreeMass/UserSystemLaws"), Names{"MassIsSymmetricAndPositive"});
   EXPECT_EQ(tests_of("PointOnACircle/UserSystemLaws"), laws_of<UserSystemLaws<OnTheCircle>>());
 }
