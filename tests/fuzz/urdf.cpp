@@ -23,7 +23,8 @@ void check(UrdfRobot const& robot) {
     require(joint.child == Index(i) && joint.parent < joint.child, "parents come before children");
     require(std::abs(joint.axis.norm() - 1.0) < 1e-12, "axes are unit vectors: ", joint.axis.norm());
     require(joint.damping >= 0.0 && joint.friction >= 0.0, "losses are not negative");
-    if (joint.mimic) require(joint.mimic->joint >= 0 && joint.mimic->joint < Index(robot.joints.size()), "mimics exist");
+    if (joint.mimic)
+      require(joint.mimic->joint >= 0 && joint.mimic->joint < Index(robot.joints.size()), "mimics exist");
   }
   std::vector<bool> is_body;
   for (UrdfLink const& link : robot.links) is_body.push_back(link.inertia.has_value());

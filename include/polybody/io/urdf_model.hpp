@@ -6,8 +6,8 @@
 #include <numeric>
 #include <variant>
 
+#include <polybody/forces/friction_laws.hpp>
 #include <polybody/forces/limits.hpp>
-#include <polybody/forces/spring_laws.hpp>
 #include <polybody/io/urdf_kinematics.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/joints/standard_joints.hpp>
@@ -24,6 +24,12 @@ struct UrdfStops {
   double slide_damping = 0.0;        ///< of prismatic joints [N s/m]
 };
 
+/// Slip speeds of the dry friction of joints, at which the regularised friction is 0.7 of its limit.
+struct UrdfSlipSpeeds {
+  Required<double> angle;  ///< of revolute and continuous joints [rad/s]
+  Required<double> slide;  ///< of prismatic joints [m/s]
+};
+
 /// Data of a model that a URDF file does not contain.
 struct UrdfOptions {
   Required<UrdfRoot> root;   ///< attachment of the root link
@@ -31,6 +37,7 @@ struct UrdfOptions {
   Placement placement = {};  ///< frame of the root link in world axes, in the reference configuration
   bool free_mimics = false;  ///< true: joints with <mimic> move freely, and are not refused if no gear represents them
   std::optional<UrdfStops> stops = {};  ///< stops at the limits of revolute and prismatic joints; none by default
+  std::optional<UrdfSlipSpeeds> slip_speeds = {};  ///< dry friction of these joints; none by default
 };
 
 /// Flexible body of type F in place of a link.
@@ -56,9 +63,10 @@ struct UrdfPoint {
 /// - A revolute, continuous or prismatic joint is a `Revolute` or `Prismatic` joint, a planar joint a `PlanarJoint`,
 /// and
 ///   a fixed joint between links with mass a `Weld`. A floating joint adds no joint.
-/// - The damping of a joint is a `LinearSpring` without stiffness. With `stops` of the options, the limits of revolute
-/// and
-///   prismatic joints are `Limit` forces. Friction, effort and speed limits are data: `robot().joints`.
+/// - The damping of a joint is the viscous part of a `DryFriction`; with `slip_speeds` of the options, the friction of
+/// the
+///   file is its dry part. With `stops`, the limits of revolute and prismatic joints are `Limit` forces. Effort and
+///   speed limits are data: `robot().joints`.
 /// - A joint that mimics another one is a `Gear` if both are revolute joints on one link with parallel axes.
 template <class P, class JointList = Joints<>, class ForceList = Forces<>, class... Fs>
 class UrdfModel;
@@ -66,16 +74,16 @@ class UrdfModel;
 template <Policy P, class... Js, class... Xs, Body... Fs>
 class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
  public:
-  using AngleDamper = OnAngle<LinearSpring>;        ///< damping of revolute and continuous joints
-  using SlideDamper = OnTranslation<LinearSpring>;  ///< damping of prismatic joints
-  using Mimic = Joint<Gear, Constraint>;            ///< coupling of a joint to another one
+  using AngleFriction = OnAngle<DryFriction>;        ///< damping and friction of revolute and continuous joints
+  using SlideFriction = OnTranslation<DryFriction>;  ///< damping and friction of prismatic joints
+  using Mimic = Joint<Gear, Constraint>;             ///< coupling of a joint to another one
   template <class G>
   using JointOf = Joint<G, P>;  ///< joint of the file with the geometry G
   /// Type of `model`.
   using ModelType =
       Model<EachOnce<Bodies, Rigid<>, Fs...>,
             EachOnce<Joints, JointOf<Weld>, JointOf<Revolute>, JointOf<Prismatic>, JointOf<PlanarJoint>, Mimic, Js...>,
-            EachOnce<Forces, AngleDamper, SlideDamper, JointLimit, TurnsLimit, SlideLimit, Xs...>>;
+            EachOnce<Forces, AngleFriction, SlideFriction, JointLimit, TurnsLimit, SlideLimit, Xs...>>;
 
   ModelType model;  ///< bodies, joints and forces
 
@@ -100,7 +108,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
         model.connect(JointOf<Weld>{}, model.ground().at(poses_[0].frame.origin), b,
                       robot_.links[0].name + " on the ground");
       });
-    for (UrdfJoint const& j : robot_.joints) joints_.push_back(add_joint(j, options.stops));
+    for (UrdfJoint const& j : robot_.joints) joints_.push_back(add_joint(j, options));
     for (UrdfJoint const& j : robot_.joints)
       if (j.mimic && !options.free_mimics) add_mimic(j);
   }
@@ -253,8 +261,10 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   }
   void set(State&, std::monostate, std::size_t, detail::UrdfPose const&) const {}
 
-  /// Adds a joint at the origin of its child link, with the damping and the stops of its motion.
-  AnyJoint add_joint(UrdfJoint const& j, std::optional<UrdfStops> const& stops) {
+  /// Adds a joint at the origin of its child link, with the friction and the stops of its motion.
+  AnyJoint add_joint(UrdfJoint const& j, UrdfOptions const& options) {
+    std::optional<UrdfStops> const& stops = options.stops;
+    std::optional<UrdfSlipSpeeds> const& speeds = options.slip_speeds;
     using Kind = UrdfJoint::Kind;
     if (j.kind == Kind::floating || hosts_[std::size_t(j.parent)] == hosts_[std::size_t(j.child)]) return {};
     if (j.kind == Kind::fixed) return connect_at(JointOf<Weld>{}, j);
@@ -262,13 +272,13 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     if (j.kind == Kind::planar) return connect_at(JointOf<PlanarJoint>{PlanarJoint{.normal = axis}}, j);
     if (j.kind == Kind::prismatic) {
       auto const handle = connect_at(JointOf<Prismatic>{Prismatic{.axis = axis}}, j);
-      apply_damping<SlideDamper>(j, handle);
+      apply_friction<SlideFriction>(j, handle, speeds ? std::optional<double>(speeds->slide) : std::nullopt);
       if (stops && j.limit)
         model.apply(SlideLimit{limit(j, stops->slide_stiffness, stops->slide_damping)}, handle, j.name + " limit");
       return handle;
     }
     auto const handle = connect_at(JointOf<Revolute>{Revolute{.axis = axis}}, j);
-    apply_damping<AngleDamper>(j, handle);
+    apply_friction<AngleFriction>(j, handle, speeds ? std::optional<double>(speeds->angle) : std::nullopt);
     if (stops && j.limit && j.kind == Kind::revolute) {
       Limit const law = limit(j, stops->angle_stiffness, stops->angle_damping);
       if (std::max(-law.lower, law.upper) < std::numbers::pi)
@@ -281,9 +291,13 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   static Limit limit(UrdfJoint const& j, double stiffness, double damping) {
     return {.lower = j.limit->lower, .upper = j.limit->upper, .stiffness = stiffness, .damping = damping};
   }
+  /// Applies the damping of a joint, and its friction if there is a slip speed.
   template <class F, class J>
-  void apply_damping(UrdfJoint const& j, ElementHandle<J> const& handle) {
-    if (j.damping > 0.0) model.apply(F{{.stiffness = 0.0, .damping = j.damping}}, handle, j.name + " damping");
+  void apply_friction(UrdfJoint const& j, ElementHandle<J> const& handle, std::optional<double> slip_speed) {
+    double const dry = slip_speed ? j.friction : 0.0;
+    if (dry > 0.0 || j.damping > 0.0)
+      model.apply(F{{.curve = {.sliding = dry, .viscous = j.damping}, .slip_speed = slip_speed.value_or(1.0)}}, handle,
+                  j.name + " friction");
   }
   template <class J>
   ElementHandle<J> connect_at(J const& joint, UrdfJoint const& j) {

@@ -42,7 +42,7 @@ TEST(Inertia, TurnedAxesOfAFreeBody) {
   model.apply(PointMoment<>{.moment = {2.0, 0.0, 0.0}}, body.centre(), "torque");
   State x = model.reference_state();
   compute_accelerations(model, x);
-  Claim const about_x{"Q6", "angular acceleration under 2 N m about x [rad/s²]", By::closed_form, "R J Rᵀ", "Rigid"};
+  Claim const about_x{"X6", "angular acceleration under 2 N m about x [rad/s²]", By::closed_form, "R J Rᵀ", "Rigid"};
   held(about_x, angular_acceleration(model, x, body.centre())[0], 1.0, 1e-14);
 }
 
@@ -69,7 +69,7 @@ TEST(Inertia, SmallSwingsOfALink) {
   State x = model.reference_state();
   compute_accelerations(model, x);
   double const rate = angular_acceleration(model, x, body.centre())[0];
-  Claim const swing{"Q6", "frequency of small swings [rad/s]", By::closed_form, "√(m g d/I_xx)", "Rigid, Revolute"};
+  Claim const swing{"X6", "frequency of small swings [rad/s]", By::closed_form, "√(m g d/I_xx)", "Rigid, Revolute"};
   held(swing, std::sqrt(std::abs(rate / std::sin(angle))), 4.703678, 1e-6);
   // hanging: the acceleration opposes the angle
   EXPECT_LT(rate * std::sin(angle), 0.0);

@@ -1,5 +1,6 @@
 // Models of URDF files: mass, inertia, kinematics and accelerations of three robots against DART 6.12, runs with joint
-// coordinates, loops, limits, mimicry, and flexible links. tests/tools/dart/urdf_numbers.cpp writes the numbers of DART.
+// coordinates, loops, limits, mimicry, and flexible links. tests/tools/dart/urdf_numbers.cpp writes the numbers of
+// DART.
 #include <polybody/urdf.hpp>
 
 #include <gtest/gtest.h>
@@ -37,6 +38,7 @@ struct Numbers {
 
   explicit Numbers(std::string const& robot) {
     std::ifstream in(folder + robot + ".dart");
+    EXPECT_TRUE(in) << robot;
     auto const vector = [&] {
       Vec3 v;
       for (double& x : v) in >> x;
@@ -74,15 +76,19 @@ void compare(Robot const& robot, State& x, Numbers const& dart, std::string cons
     auto const& body = robot.body(link.name);
     Placement const at = robot.placement(x, link.name);
     frames = std::max({frames, relative(at.origin, link.origin), (at.axes - link.axes).norm()});
-    Frame<double> const origin = frame(robot.model, x, robot.at({link.name})), centre = frame(robot.model, x, body.centre());
+    Frame<double> const origin = frame(robot.model, x, robot.at({link.name})),
+                        centre = frame(robot.model, x, body.centre());
     rates = std::max({rates, relative(origin.v, link.velocity), relative(origin.w, link.angular_velocity)});
     accelerations = std::max(accelerations, relative(acceleration(robot.model, x, body.centre()), link.acceleration));
-    turning = std::max(turning, relative(angular_acceleration(robot.model, x, body.centre()), link.angular_acceleration));
+    turning =
+        std::max(turning, relative(angular_acceleration(robot.model, x, body.centre()), link.angular_acceleration));
     mass += body.body().mass();
     moment += body.body().mass() * centre.r;
   }
   std::string const what = robot.robot().name;
-  auto const claim = [&](char const* of) { return Claim{"Q6", what + ": " + of, By::independent, "DART 6.12", formulation}; };
+  auto const claim = [&](char const* of) {
+    return Claim{"X6", what + ": " + of, By::independent, "DART 6.12", formulation};
+  };
   held(claim("mass [kg]"), mass, dart.mass, 1e-12 * mass);
   held_within(claim("centre of mass [m]"), (moment / mass - dart.centre).norm(), 1e-12, {.scale = 1.0});
   held_within(claim("frames of links [m, 1]"), frames, 1e-12, {.scale = 1.0});
@@ -114,7 +120,8 @@ TEST(UrdfModel, QuadrupedAgreesWithDart) {
   Numbers dart("quadruped");
   auto const robot = read_urdf<Constraint>(folder + "quadruped.urdf", in_the_air);
   Numbers::Link const& trunk = dart.links.front();
-  dart.motions["trunk"] = {.pose = {trunk.origin, trunk.axes}, .velocity = trunk.velocity, .angular_velocity = trunk.angular_velocity};
+  dart.motions["trunk"] = {
+      .pose = {trunk.origin, trunk.axes}, .velocity = trunk.velocity, .angular_velocity = trunk.angular_velocity};
   State x = robot.state(dart.motions);
   compare(robot, x, dart, "Constraint");
 }
@@ -124,7 +131,8 @@ TEST(UrdfModel, ClosedFourBarAgreesWithDart) {
   using Closing = Joint<PointOnLine>;
   Numbers const dart("four_bar");
   auto robot = read_urdf<Constraint, Joints<Closing>>(folder + "four_bar.urdf", on_ground);
-  robot.connect(Closing{PointOnLine{.axis = robot.direction("crank", {0, 0, 1})}}, {"coupler", {0.6, 0, 0}}, {"rocker", {0.45, 0, 0}}, "loop");
+  robot.connect(Closing{PointOnLine{.axis = robot.direction("crank", {0, 0, 1})}}, {"coupler", {0.6, 0, 0}},
+                {"rocker", {0.45, 0, 0}}, "loop");
   State x = robot.state(dart.motions);
   compare(robot, x, dart, "Constraint, loop by PointOnLine");
 }
@@ -146,7 +154,8 @@ TEST(UrdfModel, JointCoordinatesGiveTheMotionOfConstraints) {
   double distance[2];
   for (int k = 0; k < 2; ++k) {
     double const step = 2e-3 / (k + 1);
-    State const a = after(rows, rows.state(dart.motions), 0.1, step), b = after(joints, joints.state(dart.motions), 0.1, step);
+    State const a = after(rows, rows.state(dart.motions), 0.1, step),
+                b = after(joints, joints.state(dart.motions), 0.1, step);
     distance[k] = (rows.placement(a, "tool").origin - joints.placement(b, "tool").origin).norm();
   }
   EXPECT_LT(distance[0], 1e-4);
@@ -158,22 +167,27 @@ TEST(UrdfModel, AssemblyClosesTheLoop) {
   using Closing = Joint<PointOnLine>;
   Numbers const dart("four_bar");
   auto robot = read_urdf<JointCoordinates, Joints<Closing>>(folder + "four_bar.urdf", on_ground);
-  robot.connect(Closing{PointOnLine{.axis = robot.direction("crank", {0, 0, 1})}}, {"coupler", {0.6, 0, 0}}, {"rocker", {0.45, 0, 0}}, "loop");
+  robot.connect(Closing{PointOnLine{.axis = robot.direction("crank", {0, 0, 1})}}, {"coupler", {0.6, 0, 0}},
+                {"rocker", {0.45, 0, 0}}, "loop");
   std::map<std::string, UrdfMotion> near = dart.motions;
   near["pin"].position += 0.2;
   near["pivot"].position -= 0.1;
   State x = robot.state(near);
   assemble(robot.model, x);
-  Vec3 const a = position(robot.model, x, robot.at({"coupler", {0.6, 0, 0}})), b = position(robot.model, x, robot.at({"rocker", {0.45, 0, 0}}));
+  Vec3 const a = position(robot.model, x, robot.at({"coupler", {0.6, 0, 0}})),
+             b = position(robot.model, x, robot.at({"rocker", {0.45, 0, 0}}));
   EXPECT_LT((a - b).norm(), 1e-10);
 }
 
 /// Robot of two links on a slide or hinge, with `more` in its second joint.
 UrdfRobot two_links(std::string const& kind, std::string const& more, std::string const& mass = "2") {
-  return read_urdf_text("<robot name='two'>\n<link name='base'/>\n<link name='arm'><inertial><origin xyz='0.4 0 0'/><mass value='" + mass +
-                            "'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.2'/></inertial></link>\n<joint name='j' type='" + kind +
-                            "'><parent link='base'/><child link='arm'/><axis xyz='0 1 0'/>" + more + "</joint></robot>",
-                        "two.urdf");
+  return read_urdf_text(
+      "<robot name='two'>\n<link name='base'/>\n<link name='arm'><inertial><origin xyz='0.4 0 0'/><mass value='" +
+          mass +
+          "'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.2'/></inertial></link>\n<joint name='j' "
+          "type='" +
+          kind + "'><parent link='base'/><child link='arm'/><axis xyz='0 1 0'/>" + more + "</joint></robot>",
+      "two.urdf");
 }
 
 // A stop pushes back beyond a limit: I θ¨ = m g a cos θ − k (θ − u), also if u is beyond half a turn.
@@ -191,19 +205,25 @@ TEST(UrdfModel, StopsPushAtTheLimits) {
       EXPECT_NEAR(angular_acceleration(robot.model, x, robot.body("arm").centre())[1], expected, 1e-10) << angle;
     }
   }
-  UrdfModel<Constraint> const slide(
-      two_links("prismatic", "<limit lower='-0.2' upper='0.1' effort='1' velocity='1'/>"), options);
+  UrdfModel<Constraint> const slide(two_links("prismatic", "<limit lower='-0.2' upper='0.1' effort='1' velocity='1'/>"),
+                                    options);
   State x = slide.state({{"j", {-0.21}}});
   compute_accelerations(slide.model, x);
   EXPECT_NEAR(acceleration(slide.model, x, slide.body("arm").centre())[1], 0.01 * 1e4 / 2.0, 1e-10);
 }
 
-// Damping of a slide: m v̇ = −d v along a horizontal axis, so that the acceleration at v = 3 m/s is −3 d/m.
-TEST(UrdfModel, DampingActsOnTheRate) {
-  UrdfModel<Constraint> const robot(two_links("prismatic", "<limit lower='-1' upper='1' effort='1' velocity='1'/><dynamics damping='5'/>"), on_ground);
-  State x = robot.state({{"j", {0.1, 3.0}}});
-  compute_accelerations(robot.model, x);
-  EXPECT_NEAR(acceleration(robot.model, x, robot.body("arm").centre())[1], -7.5, 1e-12);
+// Losses of a slide along a horizontal axis: m v̇ = −d v − F v/√(v² + v₀²).
+TEST(UrdfModel, DampingAndFrictionOpposeTheRate) {
+  std::string const more = "<limit lower='-1' upper='1' effort='1' velocity='1'/><dynamics damping='5' friction='3'/>";
+  UrdfOptions options = on_ground;
+  for (bool const dry : {false, true}) {
+    if (dry) options.slip_speeds = UrdfSlipSpeeds{.angle = 0.01, .slide = 4.0};
+    UrdfModel<Constraint> const robot(two_links("prismatic", more), options);
+    State x = robot.state({{"j", {0.1, 3.0}}});
+    compute_accelerations(robot.model, x);
+    double const expected = dry ? -(15.0 + 3.0 * 3.0 / 5.0) / 2.0 : -7.5;
+    EXPECT_NEAR(acceleration(robot.model, x, robot.body("arm").centre())[1], expected, 1e-12);
+  }
 }
 
 // Planar and floating joints at a given pose: a free body falls with g, and a horizontal plane carries the weight.
@@ -212,21 +232,31 @@ TEST(UrdfModel, PlanarAndFloatingJoints) {
   for (std::string const kind : {"planar", "floating"}) {
     UrdfModel<Constraint> const robot(two_links(kind, ""), {.root = UrdfRoot::fixed, .gravity = {0, -9.81, 0}});
     State x = robot.state({{"j", {.pose = turned}}});
-    EXPECT_LT((robot.placement(x, "arm").origin - turned.origin).norm() + (robot.placement(x, "arm").axes - turned.axes).norm(), 1e-14) << kind;
+    EXPECT_LT((robot.placement(x, "arm").origin - turned.origin).norm() +
+                  (robot.placement(x, "arm").axes - turned.axes).norm(),
+              1e-14)
+        << kind;
     compute_accelerations(robot.model, x);
-    EXPECT_NEAR(acceleration(robot.model, x, robot.body("arm").centre())[1], kind == "planar" ? 0.0 : -9.81, 1e-12) << kind;
+    EXPECT_NEAR(acceleration(robot.model, x, robot.body("arm").centre())[1], kind == "planar" ? 0.0 : -9.81, 1e-12)
+        << kind;
   }
   UrdfModel<Constraint> const plane(two_links("planar", ""), on_ground);
-  EXPECT_TRUE(has(refusal([&] { (void)plane.state({{"j", {.pose = Placement::at({0, 0.1, 0})}}}); }),
-                  "two.urdf, line 4, joint \"j\": the motion of a planar joint must lie in its plane to 1e-9, but is off by 0.1"));
+  EXPECT_TRUE(has(
+      refusal([&] { (void)plane.state({{"j", {.pose = Placement::at({0, 0.1, 0})}}}); }),
+      "two.urdf, line 4, joint \"j\": the motion of a planar joint must lie in its plane to 1e-9, but is off by 0.1"));
 }
 
 std::string gripper(std::string const& mimic, std::string const& kind = "revolute") {
   std::string text = "<robot name='gripper'><link name='palm'/>";
   for (std::string const finger : {"left", "right"})
-    text += "<link name='" + finger + "'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='2e-4' iyz='0' izz='2e-4'/></inertial></link>"
-            "<joint name='" + finger + "' type='" + kind + "'><parent link='palm'/><child link='" + finger + "'/><origin xyz='0 " + (finger == "left" ? "0.05 0.01" : "-0.05 0") +
-            "'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/>" + (finger == "right" ? mimic : "") + "</joint>";
+    text += "<link name='" + finger +
+            "'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='2e-4' "
+            "iyz='0' izz='2e-4'/></inertial></link>"
+            "<joint name='" +
+            finger + "' type='" + kind + "'><parent link='palm'/><child link='" + finger + "'/><origin xyz='0 " +
+            (finger == "left" ? "0.05 0.01" : "-0.05 0") +
+            "'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/>" +
+            (finger == "right" ? mimic : "") + "</joint>";
   return text + "</robot>";
 }
 
@@ -247,27 +277,44 @@ TEST(UrdfModel, MimicIsAGear) {
 
 TEST(UrdfModel, RefusesMimicsThatNoGearRepresents) {
   auto const refused = [](std::string const& mimic, std::string const& kind = "revolute") {
-    return refusal([&] { (void)UrdfModel<Constraint>(read_urdf_text(gripper(mimic, kind), "gripper.urdf"), {.root = UrdfRoot::fixed}); });
+    return refusal([&] {
+      (void)UrdfModel<Constraint>(read_urdf_text(gripper(mimic, kind), "gripper.urdf"), {.root = UrdfRoot::fixed});
+    });
   };
-  EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-1'/>", "prismatic"), "gripper.urdf, line 1, joint \"right\": its <mimic> of the joint \"left\" is not supported, because a gear needs two revolute joints"));
+  EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-1'/>", "prismatic"),
+                  "gripper.urdf, line 1, joint \"right\": its <mimic> of the joint \"left\" is not supported, because "
+                  "a gear needs two revolute joints"));
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-1' offset='0.1'/>"), "the offset is 0.1 rad"));
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='1'/>"), "both joints turn equally"));
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-3.14159265'/>"), "is not a ratio of integers"));
-  UrdfModel<Constraint> const loose(read_urdf_text(gripper("<mimic joint='left' multiplier='1'/>"), "gripper.urdf"), {.root = UrdfRoot::fixed, .free_mimics = true});
+  UrdfModel<Constraint> const loose(read_urdf_text(gripper("<mimic joint='left' multiplier='1'/>"), "gripper.urdf"),
+                                    {.root = UrdfRoot::fixed, .free_mimics = true});
   EXPECT_EQ(loose.robot().joints[1].mimic->multiplier, 1.0);
 }
 
 TEST(UrdfModel, RefusesWithFileLineAndElement) {
-  auto const model = [](UrdfRobot const& robot, UrdfRoot root = UrdfRoot::fixed) { return UrdfModel<Constraint>(robot, {.root = root}); };
-  EXPECT_TRUE(has(refusal([&] { (void)model(read_urdf_text("<robot name='r'>\n<link name='a'/>\n<link name='b'/>\n<joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>", "x.urdf")); }),
+  auto const model = [](UrdfRobot const& robot, UrdfRoot root = UrdfRoot::fixed) {
+    return UrdfModel<Constraint>(robot, {.root = root});
+  };
+  EXPECT_TRUE(has(refusal([&] {
+                    (void)model(
+                        read_urdf_text("<robot name='r'>\n<link name='a'/>\n<link name='b'/>\n<joint name='j' "
+                                       "type='continuous'><parent link='a'/><child link='b'/></joint></robot>",
+                                       "x.urdf"));
+                  }),
                   "x.urdf, line 3, link \"b\": the link moves, but has no mass"));
-  EXPECT_TRUE(has(refusal([&] { (void)model(two_links("continuous", ""), UrdfRoot::free); }), "two.urdf, line 2, link \"base\": the link moves, but has no mass"));
+  EXPECT_TRUE(has(refusal([&] { (void)model(two_links("continuous", ""), UrdfRoot::free); }),
+                  "two.urdf, line 2, link \"base\": the link moves, but has no mass"));
   auto const robot = model(two_links("continuous", ""));
-  EXPECT_TRUE(has(refusal([&] { (void)robot.state({{"k", {}}}); }), "two.urdf: there is no joint \"k\". The joints are j."));
-  EXPECT_TRUE(has(refusal([&] { (void)robot.body("hand"); }), "two.urdf: there is no link \"hand\". The links are base, arm."));
-  EXPECT_TRUE(has(refusal([&] { (void)robot.body("base"); }), "two.urdf, line 2, link \"base\": the link belongs to the ground."));
+  EXPECT_TRUE(
+      has(refusal([&] { (void)robot.state({{"k", {}}}); }), "two.urdf: there is no joint \"k\". The joints are j."));
+  EXPECT_TRUE(
+      has(refusal([&] { (void)robot.body("hand"); }), "two.urdf: there is no link \"hand\". The links are base, arm."));
+  EXPECT_TRUE(has(refusal([&] { (void)robot.body("base"); }),
+                  "two.urdf, line 2, link \"base\": the link belongs to the ground."));
   EXPECT_TRUE(has(refusal([&] { (void)robot.joint<Prismatic>("j"); }), "joint \"j\": the joint is not a Prismatic."));
-  EXPECT_TRUE(has(refusal([&] { (void)robot.state({{"j", {.rate = 1e12}}}); }), "must lie in [-1e+09, 1e+09], but one is 1e+12"));
+  EXPECT_TRUE(has(refusal([&] { (void)robot.state({{"j", {.rate = 1e12}}}); }),
+                  "must lie in [-1e+09, 1e+09], but one is 1e+12"));
 }
 
 }  // namespace polybody::urdf_model_test
