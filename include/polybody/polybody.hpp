@@ -30,6 +30,8 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/rigid/inertia.hpp>
+#include <polybody/bodies/rigid/mesh_file.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>

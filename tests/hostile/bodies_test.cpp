@@ -83,6 +83,13 @@ TEST(HostileParameters, OfBodies) {
     model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "pin");
     run_ten_steps(model, GeneralisedAlpha{});
   });
+  tried += try_hostile(Inertia{.mass = 1.0, .centre = {0.1, 0.2, -0.3}, .tensor = solid.inertia}, "Inertia",
+                       [](Inertia const& inertia) {
+                         Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, 0, -9.81}};
+                         auto const body = model.add(Rigid<>(inertia.body()), "body");
+                         model.connect(Ball{}, model.ground().at(inertia.centre), body.centre(), "pin");
+                         run_ten_steps(model, GeneralisedAlpha{});
+                       });
   tried += try_hostile(planar::Rigid::Parameters{.mass = 1.0, .inertia = 1.0}, "planar::Rigid",
                        [](planar::Rigid::Parameters const& p) {
                          Model<Bodies<planar::Rigid>, Joints<Hinge>> model{Gravity{0, -9.81, 0}};

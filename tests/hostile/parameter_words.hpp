@@ -249,6 +249,8 @@ inline constexpr auto words_of<FfrIntegrals> =
 template <>
 inline constexpr auto words_of<RigidShape::Parameters> = words("mass", "inertia", "placement");
 template <>
+inline constexpr auto words_of<Inertia> = words("mass", "centre of mass|placement's origin", "inertia");
+template <>
 inline constexpr auto words_of<planar::Rigid::Parameters> = words("mass", "inertia", "placement");
 
 }  // namespace polybody

@@ -50,7 +50,9 @@ FLOORS = {
 }
 # Headers with abstract classes, whose functions a program calls a few times in each evaluation of a system.
 ABSTRACT = tuple(f"polybody/{name}.hpp" for name in ("system/coordinates", "system/model_operations", "system/step_secants", "solvers/tangent_solver"))
-OPTIONAL_PACKAGES = {  # KLU, Spectra, MPI
+OPTIONAL_PACKAGES = {  # KLU, Spectra, MPI, liburdfdom
+    "polybody/io/urdf_file.hpp",
+    "polybody/urdf.hpp",
     "polybody/solvers/klu.hpp",
     "polybody/vibration/spectra_modes.hpp",
     "polybody/study/mpi.hpp",
