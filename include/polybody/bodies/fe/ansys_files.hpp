@@ -82,15 +82,16 @@ class HarwellBoeing {
     bool const right_side = lines.size() > 4 && text_.integer(lines[4], "a number of lines") > 0;
     line = required("the type and the size of the matrix");
     type_ = capitals(line.substr(0, 3));
-    std::vector<std::string_view> const sizes = words_of(std::string_view(line).substr(std::min(line.size(), std::size_t(3))));
+    std::vector<std::string_view> const sizes =
+        words_of(std::string_view(line).substr(std::min(line.size(), std::size_t(3))));
     if (type_ != "RSA" && type_ != "RUA")
       text_.fail("the type of the matrix is " + FeText::quoted(type_) +
                  ", but must be RSA or RUA: real entries, symmetric or not, assembled");
     if (sizes.size() < 3) text_.fail("the line lacks the numbers of rows, columns and entries");
     for (std::size_t k = 0; k < 3; ++k) size_[k] = text_.integer(sizes[k], "a number of rows, columns or entries");
     if (size_[0] != size_[1] || size_[0] < 1 || size_[2] < 0)
-      text_.fail(sentence_of({"the matrix is ", size_[0], "×", size_[1], " with ", size_[2],
-                              " entries, but must be square"}));
+      text_.fail(
+          sentence_of({"the matrix is ", size_[0], "×", size_[1], " with ", size_[2], " entries, but must be square"}));
     line = required("the formats");
     line.resize(std::max(line.size(), std::size_t(52)), ' ');
     format_[0] = FixedColumns::of(std::string_view(line).substr(0, 16), "iI");
@@ -156,7 +157,7 @@ class HarwellBoeing {
 }  // namespace detail
 
 /// Nodes of Ansys: of the first NBLOCK of a .cdb file (CDWRITE), or of the table that NLIST prints.
-/// \throws IoError, with the line, for nodes with rotated axes and for fields that are no numbers.
+/// \throws IoError, with the line, for nodes with rotated axes and for fields without a number.
 template <class = void>
 FeNodes read_ansys_nodes(std::string const& file) {
   detail::FeText text(file);
@@ -188,8 +189,8 @@ FeMatrix read_ansys_matrix(std::string const& file, std::string const& mapping_f
   detail::FeText text(file);
   detail::HarwellBoeing matrix(text);
   if (matrix.size() != Index(rows.size()))
-    text.fail(sentence_of({"the matrix has ", matrix.size(), " rows, but ", mapping_file, " has ", rows.size(),
-                           " equations"}));
+    text.fail(sentence_of(
+        {"the matrix has ", matrix.size(), " rows, but ", mapping_file, " has ", rows.size(), " equations"}));
   matrix.read(entries, rows);
   return entries.assembled(text, matrix.symmetric());
 }

@@ -11,11 +11,12 @@ namespace polybody {
 
 /// Limits of `check_matrices`.
 struct FeLimits {
-  double asymmetry = 1e-9;     ///< largest difference of mirrored entries, relative to the largest entry (1)
-  double rigid_force = 1e-6;   ///< largest ‖K φ‖/(‖K‖ ‖φ‖) of a rigid motion φ (1)
-  double mass_error = 0.01;    ///< largest relative difference from the given mass (1)
-  double fastest_wave = 1e5;   ///< largest speed of waves [m/s]
-  double least_pivot = 1e-13;  ///< smallest pivot of the stiffness with six displacements fixed, relative (1)
+  double asymmetry = 1e-9;      ///< largest difference of mirrored entries, relative to the largest entry (1)
+  double rigid_force = 1e-6;    ///< largest ‖K φ‖/(‖K‖ ‖φ‖) of a rigid motion φ (1)
+  double mass_error = 0.01;     ///< largest relative difference from the given mass (1)
+  double fastest_wave = 1e5;    ///< largest speed of waves [m/s]
+  double least_density = 0.01;  ///< smallest mean density of the box around the nodes [kg/m³]
+  double least_pivot = 1e-13;   ///< smallest pivot of the stiffness with six displacements fixed, relative (1)
 };
 
 /// Results of `check_matrices`, in SI units.
@@ -24,6 +25,7 @@ struct FeReport {
   Vec3 centre = Vec3::Zero();               ///< centre of mass [m]
   double asymmetry = 0.0;                   ///< largest relative difference of mirrored entries of both matrices (1)
   std::array<double, 6> rigid_forces = {};  ///< ‖K φ‖/(‖K‖ ‖φ‖) of translations and rotations about x, y, z (1)
+  double density = 0.0;                     ///< total mass, divided by the volume of the box around the nodes [kg/m³]
   double wave_speed = 0.0;                  ///< speed of waves from node to node, to a factor of two [m/s]
   std::vector<std::string> remarks;         ///< sentences about the interpretation of the files, and about units
 };
@@ -45,10 +47,9 @@ double asymmetry_of(FeMatrix const& m, FeNodes const& nodes, double limit) {
     for (Structure::Sparse::InnerIterator it(m.entries, j); it; ++it) {
       double const other = turned.coeff(it.row(), j), difference = std::abs(it.value() - other) / largest;
       if (!(difference <= limit))
-        throw InvalidInput("fe.not_symmetric",
-                           {ErrorObject{m.file}, ": the matrix is not symmetric: the entry of ",
-                            row_name(nodes, it.row()), " and ", row_name(nodes, j), " is ", ErrorValue{it.value()},
-                            ", but its mirror image is ", other, "."});
+        throw InvalidInput("fe.not_symmetric", {ErrorObject{m.file}, ": the matrix is not symmetric: the entry of ",
+                                                row_name(nodes, it.row()), " and ", row_name(nodes, j), " is ",
+                                                ErrorValue{it.value()}, ", but its mirror image is ", other, "."});
       worst = std::max(worst, difference);
     }
   return worst;
@@ -80,13 +81,14 @@ std::array<double, 6> rigid_forces_of(FeModel const& model, double limit) {
     if (ratio <= limit) continue;
     Index worst = 0;
     force.cwiseAbs().maxCoeff(&worst);
-    throw InvalidInput("fe.rigid_motion",
-                       {ErrorObject{model.stiffness.file}, ": a rigid ",
-                        motion < 3 ? "displacement along " : "rotation about ", "xyz"[motion % 3],
-                        " strains the structure, most at ", row_name(model.nodes, worst), ": the relative force is ",
-                        ErrorValue{ratio}, ", but the limit is ", limit,
-                        ". The displacements are fixed, an element or a triangle of the matrix is missing, or the "
-                        "nodes of ", model.nodes.file, " do not belong to the matrix or have too few digits."});
+    throw InvalidInput(
+        "fe.rigid_motion",
+        {ErrorObject{model.stiffness.file}, ": a rigid ", motion < 3 ? "displacement along " : "rotation about ",
+         "xyz"[motion % 3], " strains the structure, most at ", row_name(model.nodes, worst),
+         ": the relative force is ", ErrorValue{ratio}, ", but the limit is ", limit,
+         ". The displacements are fixed, an element or a triangle of the matrix is missing, or the "
+         "nodes of ",
+         model.nodes.file, " do not belong to the matrix or have too few digits."});
   }
   return forces;
 }
@@ -125,13 +127,14 @@ void require_connected(FeModel const& model, double limit) {
   Eigen::SimplicialLDLT<Structure::Sparse> const factor(k);
   for (Index i = 0; i < k.rows(); ++i) {
     Index const row = factor.permutationPinv().indices()[i];
-    double const pivot = factor.info() == Eigen::Success ? factor.vectorD()[i] / k.coeff(row, row) : 0.0;
+    double const pivot = factor.info() == Eigen::Success ? factor.vectorD()[i] / std::abs(k.coeff(row, row)) : 0.0;
     if (pivot > limit) continue;
     throw InvalidInput("fe.loose",
                        {ErrorObject{model.stiffness.file},
                         ": more than six motions need no force, or the stiffness has a negative eigenvalue: the "
-                        "factorisation fails at ", row_name(model.nodes, row), " with the relative pivot ",
-                        ErrorValue{pivot}, ". The parts of the model must be connected."});
+                        "factorisation fails at ",
+                        row_name(model.nodes, row), " with the relative pivot ", ErrorValue{pivot},
+                        ". The parts of the model must be connected."});
   }
 }
 
@@ -147,11 +150,40 @@ Structure::Sparse masses_along_x(Structure::Sparse const& mass) {
   return m;
 }
 
+/// Volume of the box around the nodes, with edges along the axes [m³].
+template <class = void>
+double box_volume(FeNodes const& nodes) {
+  Vec3 low = nodes.positions[0], high = low;
+  for (Vec3 const& r : nodes.positions) low = low.cwiseMin(r), high = high.cwiseMax(r);
+  return (high - low).prod();
+}
+
+/// \throws InvalidInput unless the mass is the given one [kg], and the speed of waves and the mean density are within
+/// the limits. The sentence names units that fit.
+template <class = void>
+void require_units(FeModel const& model, FeReport& report, double mass, FeLimits const& limits) {
+  std::string const units = unit_sentence({report.wave_speed, report.mass, box_volume(model.nodes), mass});
+  if (!(std::abs(report.mass - mass) <= limits.mass_error * mass))
+    throw InvalidInput("fe.mass", {ErrorObject{model.mass.file}, ": the total mass is ", ErrorValue{report.mass},
+                                   " kg, but the given mass is ", mass, " kg.", units});
+  if (!(report.wave_speed <= limits.fastest_wave))
+    throw InvalidInput("fe.units",
+                       {ErrorObject{model.stiffness.file}, ": waves would travel at ", ErrorValue{report.wave_speed},
+                        " m/s, but the limit is ", limits.fastest_wave, " m/s.", units});
+  if (!(report.density >= limits.least_density))
+    throw InvalidInput(
+        "fe.units", {ErrorObject{model.nodes.file}, ": the mean density in the box around the nodes is ",
+                     ErrorValue{report.density}, " kg/m³, but the limit is ", limits.least_density, " kg/m³.", units});
+  if (report.wave_speed < 1e3 && !units.empty())
+    report.remarks.push_back(sentence_of(
+        {model.stiffness.file, ": waves travel at ", report.wave_speed, " m/s, slower than in metals.", units}));
+}
+
 }  // namespace detail
 
 /// Checks the matrices of a model in SI units: symmetry; six rigid motions without force, and no other such motion; the
-/// total mass against `mass` [kg]; and the units by the speed of waves. The sentence about a wrong mass or speed names
-/// units that fit, such as millimetres and tonnes.
+/// total mass against `mass` [kg]; and the units by the speed of waves and the density. The sentence about a wrong
+/// mass, speed or density names units that fit, such as millimetres and tonnes.
 /// \throws InvalidInput that names the file and the displacement of a node for a violated limit.
 template <class = void>  // compiled only if used
 FeReport check_matrices(FeModel const& model, double mass, FeLimits const& limits = {}) {
@@ -170,18 +202,9 @@ FeReport check_matrices(FeModel const& model, double mass, FeLimits const& limit
   report.mass = masses.sum();
   for (Index i = 0; i < model.nodes.size(); ++i)
     report.centre += masses[i] / report.mass * model.nodes.positions[std::size_t(i)];
+  report.density = report.mass / detail::box_volume(model.nodes);
   report.wave_speed = detail::wave_speed(m, model.stiffness.entries, model.nodes.positions);
-  std::string const units = detail::unit_sentence(report.wave_speed, report.mass, mass);
-  if (!(std::abs(report.mass - mass) <= limits.mass_error * mass))
-    throw InvalidInput("fe.mass", {ErrorObject{model.mass.file}, ": the total mass is ", ErrorValue{report.mass},
-                                   " kg, but the given mass is ", mass, " kg.", units});
-  if (!(report.wave_speed <= limits.fastest_wave))
-    throw InvalidInput("fe.units", {ErrorObject{model.stiffness.file}, ": waves would travel at ",
-                                    ErrorValue{report.wave_speed}, " m/s, but the limit is ", limits.fastest_wave,
-                                    " m/s.", units});
-  if (report.wave_speed < 1e3 && !units.empty())
-    report.remarks.push_back(sentence_of({model.stiffness.file, ": waves travel at ", report.wave_speed,
-                                          " m/s, slower than in metals.", units}));
+  detail::require_units(model, report, mass, limits);
   return report;
 }
 
@@ -193,8 +216,8 @@ Structure structure_of(FeModel const& model, double mass, FeLimits const& limits
   try {
     return structure_of(model.mass.entries, model.stiffness.entries, model.nodes.positions, limits.fastest_wave);
   } catch (InvalidInput const& error) {
-    throw InvalidInput({ErrorObject{model.mass.file}, ", ", model.stiffness.file, ", ", model.nodes.file, ": ",
-                        ErrorCause{error}});
+    throw InvalidInput(
+        {ErrorObject{model.mass.file}, ", ", model.stiffness.file, ", ", model.nodes.file, ": ", ErrorCause{error}});
   }
 }
 

@@ -70,8 +70,8 @@ class FeNodeList {
     all.file = text.file();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (i > 0 && nodes_[i].label == nodes_[i - 1].label)
-        text.fail_at(nodes_[i].line, sentence_of({"node ", nodes_[i].label, " occurs a second time, after line ",
-                                                  nodes_[i - 1].line}));
+        text.fail_at(nodes_[i].line,
+                     sentence_of({"node ", nodes_[i].label, " occurs a second time, after line ", nodes_[i - 1].line}));
       all.labels.push_back(nodes_[i].label);
       all.positions.push_back(nodes_[i].position);
     }
@@ -117,8 +117,7 @@ class FeEntries {
   }
   /// Refuses a row or column outside the matrix with n rows.
   static void require_inside(FeText const& text, Index i, Index n) {
-    if (i < 1 || i > n)
-      text.fail(sentence_of({"row or column ", i, " is outside the matrix, which has ", n, " rows"}));
+    if (i < 1 || i > n) text.fail(sentence_of({"row or column ", i, " is outside the matrix, which has ", n, " rows"}));
   }
   /// Matrix of the entries. A matrix that is `symmetric` by its format may contain one entry of each pair.
   /// \throws IoError for entries that occur twice or contradict each other, and for rows without a diagonal entry.
@@ -140,9 +139,8 @@ class FeEntries {
   }
   void require_pair(FeText const& text, Entry const& e, Entry const& other, double largest) const {
     if (!(std::abs(e.value - other.value) <= 1e-9 * largest))
-      text.fail_at(std::max(e.line, other.line),
-                   sentence_of({name(e), " is ", e.value, ", but its mirror image is ", other.value,
-                                "; the format is symmetric"}));
+      text.fail_at(std::max(e.line, other.line), sentence_of({name(e), " is ", e.value, ", but its mirror image is ",
+                                                              other.value, "; the format is symmetric"}));
   }
   void require_diagonal(FeText const& text, Structure::Sparse const& m) const {
     for (Index i = 0; i < m.rows(); ++i)

@@ -122,7 +122,7 @@ bool dmig_symmetric(FeText const& text, NastranCard const& card) {
 }  // namespace detail
 
 /// Nodes of the GRID entries of a bulk data file of Nastran, in the basic coordinate system.
-/// \throws IoError, with the line, for other coordinate systems, fixed displacements and fields that are no numbers.
+/// \throws IoError, with the line, for other coordinate systems, fixed displacements and fields without a number.
 template <class = void>
 FeNodes read_nastran_nodes(std::string const& file) {
   detail::FeText text(file);

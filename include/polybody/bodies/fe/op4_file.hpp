@@ -37,10 +37,10 @@ struct Op4Header {
       text.fail(sentence_of({"the matrix ", name, " is ", rows, "×", columns, ", but ", nodes, " nodes need ",
                              3 * nodes, "×", 3 * nodes, ", or ", 6 * nodes, "×", 6 * nodes, " with rotations"}));
   }
-  /// Numbers of the next lines, up to a line of integers.
+  /// Numbers of the next lines, up to a line that begins with an integer.
   std::vector<double> values(FeText& text) const {
     std::vector<double> all;
-    for (std::string line; text.peek(line) && line.find('.') != line.npos;) {
+    for (std::string line; text.peek(line) && line.find('.') < std::min(numbers.width, std::size_t(32));) {
       text.next(line);
       for (std::string_view const field : numbers.fields(line)) all.push_back(text.real(field, "an entry"));
     }
@@ -94,11 +94,12 @@ class Op4Columns {
     std::vector<double> const values = header_.values(text_);
     Index const count = Index(values.size());
     if (count == 0 || (length != count && length != 2 * count))
-      text_.fail(sentence_of({"column ", column, " of the matrix ", header_.name, " has ", count,
-                              " numbers from row ", row, ", but declares ", length, " words"}));
+      text_.fail(sentence_of({"column ", column, " of the matrix ", header_.name, " has ", count, " numbers from row ",
+                              row, ", but declares ", length, " words"}));
     if (!entries) return;
     Index const components = header_.rows / nodes_;
-    for (Index const i : {column, row, std::min(row, header_.rows) + count - 1}) FeEntries::require_inside(text_, i, header_.rows);
+    for (Index const i : {column, row, std::min(row, header_.rows) + count - 1})
+      FeEntries::require_inside(text_, i, header_.rows);
     for (Index k = 0; k < count; ++k)
       entries->add(text_, place(row - 1 + k, components), place(column - 1, components), values[std::size_t(k)]);
   }
