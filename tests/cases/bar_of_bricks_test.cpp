@@ -1,6 +1,7 @@
-// Bar of four bricks by its matrices, through the formats of all programs (projectchrono/chrono#528: a stiffness that is
-// halved). Steel bricks of 0.1 m, E = 2.1e11, ν = 0.3, ρ = 7850, 2×2×2 Gauss points, consistent mass. The folder
-// bar_of_bricks has the matrices of an independent program, and the files that CalculiX 2.20 writes for one brick of 1 m.
+// Bar of four bricks by its matrices, through the formats of all programs (projectchrono/chrono#528: a stiffness that
+// is halved). Steel bricks of 0.1 m, E = 2.1e11, ν = 0.3, ρ = 7850, 2×2×2 Gauss points, consistent mass. The folder
+// bar_of_bricks has the matrices of an independent program, and the files that CalculiX 2.20 writes for one brick of 1
+// m.
 
 #include <gtest/gtest.h>
 

@@ -59,8 +59,7 @@ inline std::string nastran_number(double x) {
 }
 
 /// Calls `write(i, j, value)` for each entry with i ≥ j, column by column; with `full`, for all entries.
-inline void each_entry(Structure::Sparse const& m, bool full,
-                       std::function<void(Index, Index, double)> const& write) {
+inline void each_entry(Structure::Sparse const& m, bool full, std::function<void(Index, Index, double)> const& write) {
   for (Index j = 0; j < m.outerSize(); ++j)
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it)
       if (full || it.row() >= j) write(it.row(), j, it.value());
@@ -116,7 +115,8 @@ inline std::string dmig_large(Structure::Sparse const& m, std::string const& nam
 inline std::string dmig_free(Structure::Sparse const& m, std::string const& name) {
   std::string text = "DMIG," + name + ",0,6,2,0\n";
   each_entry(m, false, [&](Index i, Index j, double x) {
-    text += print("DMIG,%s,%td,%td,,%td,%td,%.15E\n", name.c_str(), label(j / 3), j % 3 + 1, label(i / 3), i % 3 + 1, x);
+    text +=
+        print("DMIG,%s,%td,%td,,%td,%td,%.15E\n", name.c_str(), label(j / 3), j % 3 + 1, label(i / 3), i % 3 + 1, x);
   });
   return text;
 }
@@ -127,7 +127,8 @@ enum class Op4 { dense, strings, wide_strings };
 /// OP4 matrix with three or six components per node; double precision, with numbers or words as lengths.
 inline std::string op4(Structure::Sparse const& m, std::string const& name, Op4 layout, Index components, Index words) {
   Index const n = m.rows() / 3 * components;
-  std::string text = print("%8td%8td%8d%8d%-8s1P,3E23.16\n", n, layout == Op4::wide_strings ? -n : n, 6, 2, name.c_str());
+  std::string text =
+      print("%8td%8td%8d%8d%-8s1P,3E23.16\n", n, layout == Op4::wide_strings ? -n : n, 6, 2, name.c_str());
   MatX const full(m);
   auto const numbers = [&](Index row, Index count, Index j) {
     std::string lines;

@@ -1,5 +1,6 @@
-// Checks of finite element models: each fault has its sentence, and wrong units are guessed. The model is the tetrahedron
-// of four nodes with linear shape functions, E = 2.1e11, ν = 0.3, ρ = 7850, edges of 0.1 m: its mass is ρ V = ρ a³/6.
+// Checks of finite element models: each fault has its sentence, and wrong units are guessed. The model is the
+// tetrahedron of four nodes with linear shape functions, E = 2.1e11, ν = 0.3, ρ = 7850, edges of 0.1 m: its mass is ρ V
+// = ρ a³/6.
 #include <polybody/fe_matrices.hpp>
 
 #include <gtest/gtest.h>
@@ -72,9 +73,9 @@ TEST(FeChecks, EachFaultNamesFileAndElement) {
                   "k.mtx: a rigid displacement along y strains the structure, most at y of node 2"));
   EXPECT_TRUE(has(told([](FeModel& m) { std::swap(m.nodes.positions[0], m.nodes.positions[3]); }),
                   "k.mtx: a rigid rotation about "));
-  EXPECT_TRUE(has(told([](FeModel& m) { m.nodes.remove(4); }),
-                  "m.mtx: the matrix is 12×12 with the largest entry"));
-  EXPECT_TRUE(has(told([](FeModel& m) { m.stiffness.entries *= 0.0; }), "k.mtx: the matrix is 12×12 with the largest entry 0"));
+  EXPECT_TRUE(has(told([](FeModel& m) { m.nodes.remove(4); }), "m.mtx: the matrix is 12×12 with the largest entry"));
+  EXPECT_TRUE(
+      has(told([](FeModel& m) { m.stiffness.entries *= 0.0; }), "k.mtx: the matrix is 12×12 with the largest entry 0"));
   EXPECT_TRUE(has(told([](FeModel&) {}, 2.0), "m.mtx: the total mass is 1.30833333 kg, but the given mass is 2 kg."));
   EXPECT_TRUE(has(told([](FeModel&) {}, -1.0), "check_matrices: the given mass must be positive, but is -1 kg."));
   EXPECT_TRUE(has(told([](FeModel& m) { m.mass.entries.coeffRef(4, 1) = m.mass.entries.coeffRef(1, 4) = 1.0; }),
@@ -84,8 +85,7 @@ TEST(FeChecks, EachFaultNamesFileAndElement) {
 
 TEST(FeChecks, PartsThatAreNotConnectedAreRefused) {
   FeModel const model = tetrahedra(2);
-  EXPECT_TRUE(has(refusal([&] { check_matrices(model, 2.0 * total); }),
-                  "k.mtx: more than six motions need no force"));
+  EXPECT_TRUE(has(refusal([&] { check_matrices(model, 2.0 * total); }), "k.mtx: more than six motions need no force"));
 }
 
 TEST(FeChecks, GuessesTheUnitsOfTheFiles) {
@@ -94,21 +94,26 @@ TEST(FeChecks, GuessesTheUnitsOfTheFiles) {
   };
   auto const sentence = [&](FeUnits const& u) { return refusal([&] { check_matrices(in_units(u), total); }); };
   std::string const tonnes = sentence(mm_tonne_newton);
-  EXPECT_TRUE(has(tonnes, "m.mtx: the total mass is 0.00130833333 kg, but the given mass is 1.30833333 kg. With the nodes "
-                          "in millimetres, the masses in tonnes, the stiffness in N/mm, waves travel at "));
+  EXPECT_TRUE(has(tonnes,
+                  "m.mtx: the total mass is 0.00130833333 kg, but the given mass is 1.30833333 kg. With the nodes "
+                  "in millimetres, the masses in tonnes, the stiffness in N/mm, waves travel at "));
   EXPECT_TRUE(has(tonnes, "convert the model by in_si with FeUnits{.length = 0.001, .mass = 1000, .force = 1}."));
-  EXPECT_TRUE(has(sentence(mm_kilogram_kilonewton), "nodes.inp: the mean density in the box around the nodes is 1.30833333e-06 kg/m³"));
+  EXPECT_TRUE(has(sentence(mm_kilogram_kilonewton),
+                  "nodes.inp: the mean density in the box around the nodes is 1.30833333e-06 kg/m³"));
   EXPECT_TRUE(has(sentence(mm_kilogram_kilonewton), "the masses in kilograms, the stiffness in kN/mm"));
   EXPECT_TRUE(has(sentence(inch_pound_force), "With the nodes in inches"));
   EXPECT_TRUE(has(sentence({1e-3, 1.0, 1e-3}), "k.mtx: waves would travel at "));  // nodes in mm, stiffness in N/m
-  EXPECT_TRUE(has(sentence({1e-3, 1.0, 1e-3}), "With the nodes in millimetres, the masses in kilograms, the stiffness in N/m"));
+  EXPECT_TRUE(
+      has(sentence({1e-3, 1.0, 1e-3}), "With the nodes in millimetres, the masses in kilograms, the stiffness in N/m"));
   FeReport const soft = check_matrices(in_units({1.0, 1.0, 1e3}), total);  // stiffness in N/mm
   ASSERT_EQ(soft.remarks.size(), 1u);
-  EXPECT_TRUE(has(soft.remarks[0], "slower than in metals. With the nodes in metres, the masses in kilograms, the "
-                                   "stiffness in N/mm"));
+  EXPECT_TRUE(has(soft.remarks[0],
+                  "slower than in metals. With the nodes in metres, the masses in kilograms, the "
+                  "stiffness in N/mm"));
   for (FeUnits const& u : {mm_tonne_newton, mm_kilogram_kilonewton, inch_pound_force})
     EXPECT_NEAR(check_matrices(in_si(in_units(u), u), total).mass, total, 1e-12);
-  EXPECT_TRUE(has(refusal([&] { in_si(tetrahedra(1), {0.0, 1.0, 1.0}); }), "a unit must be positive and finite, but one is 0."));
+  EXPECT_TRUE(has(refusal([&] { in_si(tetrahedra(1), {0.0, 1.0, 1.0}); }),
+                  "a unit must be positive and finite, but one is 0."));
 }
 
 }  // namespace fe_checks_test

@@ -59,11 +59,13 @@ MatX three() {
 
 TEST_F(FeReaders, AbaqusReadsBothFormats) {
   auto const reader = [](std::string const& path) { return read_abaqus_matrix(path, one_node()); };
-  std::string const labels = "** stiffness\n*MATRIX INPUT, NAME=K, TYPE=SYMMETRIC\n7,1, 7,1, 4.0e+00\n7,2,7,1,-1.\n"
-                             "7,2,7,2,5\n7,3,7,2,2\n7,3,7,3,6\n";
+  std::string const labels =
+      "** stiffness\n*MATRIX INPUT, NAME=K, TYPE=SYMMETRIC\n7,1, 7,1, 4.0e+00\n7,2,7,1,-1.\n"
+      "7,2,7,2,5\n7,3,7,2,2\n7,3,7,3,6\n";
   EXPECT_EQ(read(labels, reader), three());
   EXPECT_EQ(read("1 1  4.0e+00\n1 2 -1.0e+00\n2 1 -1.0e+00\n2 2 5\n2 3 2\n3 2 2\n3 3 6\n", reader), three());
-  FeMatrix const half = read_abaqus_matrix(files.put("file", "1 1 4\n2 1 -1\n1 2 0\n2 2 5\n3 2 2\n3 3 6\n"), one_node());
+  FeMatrix const half =
+      read_abaqus_matrix(files.put("file", "1 1 4\n2 1 -1\n1 2 0\n2 2 5\n3 2 2\n3 3 6\n"), one_node());
   EXPECT_EQ(MatX(half.entries), three());
   ASSERT_EQ(half.remarks.size(), 1u);
   EXPECT_TRUE(has(half.remarks[0], "the upper triangle of the matrix is zero; the matrix is read as a symmetric one"));
@@ -89,8 +91,9 @@ TEST_F(FeReaders, AbaqusRefusesWithLineAndElement) {
 }
 
 TEST_F(FeReaders, AbaqusNodesAreThoseOfPlainLines) {
-  files.put("file", "*Heading\n*Part, name=P\n*Node\n  9, 1., 2.5e-1, -3\n  7, 0, 0, 0\n*Element, type=C3D8,\n elset=E\n"
-                    "1, 7, 9\n*Node, nset=B, system=R\n 8, 4, 5, 6\n");
+  files.put("file",
+            "*Heading\n*Part, name=P\n*Node\n  9, 1., 2.5e-1, -3\n  7, 0, 0, 0\n*Element, type=C3D8,\n elset=E\n"
+            "1, 7, 9\n*Node, nset=B, system=R\n 8, 4, 5, 6\n");
   FeNodes const n = read_abaqus_nodes(file);
   EXPECT_EQ(n.labels, (std::vector<Index>{7, 8, 9}));
   EXPECT_EQ(n.positions[2], Vec3(1, 0.25, -3));
@@ -117,22 +120,24 @@ TEST_F(FeReaders, NastranReadsThreeFieldFormats) {
       "DMIG    K              7       2               7       2    5.+0        +A\n"
       "+A             7       3    2.D0\nDMIG    K              7       3               7       3   0.6+1\n";
   EXPECT_EQ(read(small, reader), three());
-  std::string const large = "DMIG    K              0       6       2       0\n"
-                            "DMIG*   K                              7               1\n"
-                            "*                      7               1 4.000000000D+00\n"
-                            "*                      7               2-1.000000000D+00\n"
-                            "DMIG*   K                              7               2\n"
-                            "*                      7               2 5.000000000D+00\n"
-                            "*                      7               3 2.000000000D+00\n"
-                            "DMIG*   K                              7               3\n"
-                            "*                      7               3 6.000000000D+00\n";
+  std::string const large =
+      "DMIG    K              0       6       2       0\n"
+      "DMIG*   K                              7               1\n"
+      "*                      7               1 4.000000000D+00\n"
+      "*                      7               2-1.000000000D+00\n"
+      "DMIG*   K                              7               2\n"
+      "*                      7               2 5.000000000D+00\n"
+      "*                      7               3 2.000000000D+00\n"
+      "DMIG*   K                              7               3\n"
+      "*                      7               3 6.000000000D+00\n";
   EXPECT_EQ(read(large, reader), three());
   EXPECT_EQ(read("DMIG,K,0,1,2\nDMIG,K,7,1,,7,1,4.\n,7,2,-1.\nDMIG,K,7,2,,7,2,5.\n,7,1,-1.,,7,3,2.,\n"
                  "DMIG,K,7,3,,7,3,6.\n+,7,2,2.\n",
                  reader),
             three());
-  files.put("file", "GRID,9,,1.5,.25,-3.+0\nGRID           7             1.0             2.0\n"
-                    "GRID*                  8                 1.250000000E+00-2.500000000E+00\n*        3.750000000E+00\n");
+  files.put("file",
+            "GRID,9,,1.5,.25,-3.+0\nGRID           7             1.0             2.0\n"
+            "GRID*                  8                 1.250000000E+00-2.500000000E+00\n*        3.750000000E+00\n");
   FeNodes const n = read_nastran_nodes(file);
   EXPECT_EQ(n.labels, (std::vector<Index>{7, 8, 9}));
   EXPECT_EQ(n.positions[0], Vec3(1, 0, 2));
@@ -167,32 +172,37 @@ std::string const op4_tail = "       4       1       1\n 1.0000000000000000E+00\
 
 TEST_F(FeReaders, Op4ReadsTheLayoutOfTheSample) {
   auto const reader = [](std::string const& path) { return read_op4_matrix(path, "K", one_node()); };
-  std::string const other = "       2      -2       6       4EYECD   1P,3E22.15\n       1       0       6\n"
-                            "       5       2\n-1.000000000000000E+00 1.000000000000000E+00\n"
-                            "       3       1       1\n 1.000000000000000E+00\n";
-  std::string const wide = "       3      -3       6       2K       1P,3E23.16\n       1       0       6\n"
-                           "       5       1\n 4.0000000000000000E+00-1.0000000000000000E+00\n       2       0       8\n"
-                           "       7       1\n-1.0000000000000000E+00 5.0000000000000000E+00 2.0000000000000000E+00\n"
-                           "       3       0       6\n       3       2\n 2.0000000000000000E+00\n"
-                           "       3       3\n 6.0000000000000000E+00\n";
+  std::string const other =
+      "       2      -2       6       4EYECD   1P,3E22.15\n       1       0       6\n"
+      "       5       2\n-1.000000000000000E+00 1.000000000000000E+00\n"
+      "       3       1       1\n 1.000000000000000E+00\n";
+  std::string const wide =
+      "       3      -3       6       2K       1P,3E23.16\n       1       0       6\n"
+      "       5       1\n 4.0000000000000000E+00-1.0000000000000000E+00\n       2       0       8\n"
+      "       7       1\n-1.0000000000000000E+00 5.0000000000000000E+00 2.0000000000000000E+00\n"
+      "       3       0       6\n       3       2\n 2.0000000000000000E+00\n"
+      "       3       3\n 6.0000000000000000E+00\n";
   EXPECT_EQ(read(other + wide + op4_tail, reader), three());
-  std::string const lower = op4_head + "       1       1       2\n 4.0000000000000000E+00-1.0000000000000000E+00\n"
-                                       "       2       2       4\n 5.0000000000000000E+00 2.0000000000000000E+00\n"
-                                       "       3       3       1\n 6.0000000000000000E+00\n";
+  std::string const lower = op4_head +
+                            "       1       1       2\n 4.0000000000000000E+00-1.0000000000000000E+00\n"
+                            "       2       2       4\n 5.0000000000000000E+00 2.0000000000000000E+00\n"
+                            "       3       3       1\n 6.0000000000000000E+00\n";
   EXPECT_EQ(read(lower + op4_tail, reader), three());
 }
 
 TEST_F(FeReaders, Op4RefusesWithLineAndElement) {
   std::string const column = "       1       1       1\n 4.0000000000000000E+00\n";
   EXPECT_TRUE(has(op4("hello\n"), "1: the line is not the header of an OP4 matrix: columns, rows, form, type, name."));
-  EXPECT_TRUE(has(op4("       3       3       6       2K       no number here\n"), "1: the header of the OP4 matrix K"));
+  EXPECT_TRUE(
+      has(op4("       3       3       6       2K       no number here\n"), "1: the header of the OP4 matrix K"));
   EXPECT_TRUE(has(op4("       3       3       6       4K       1P,3E23.16\n"), "1: the type of the matrix K is 4"));
   EXPECT_TRUE(has(op4("       5       5       6       2K       1P,3E23.16\n"),
                   "1: the matrix K is 5×5, but 1 nodes need 3×3, or 6×6 with rotations."));
   EXPECT_TRUE(has(op4("       1       1       6       2M       1P,3E23.16\n       2       1       1\n 1.0E+00\n"),
                   "the file has no OP4 matrix K; it has the matrices M."));
   EXPECT_TRUE(has(op4(op4_head + column), "the file ends within the matrix K."));
-  EXPECT_TRUE(has(op4(op4_head + "       1       1\n"), "2: \"       1       1\" is not column, row and number of words."));
+  EXPECT_TRUE(
+      has(op4(op4_head + "       1       1\n"), "2: \"       1       1\" is not column, row and number of words."));
   EXPECT_TRUE(has(op4(op4_head + "       1       1       5\n 4.0E+00\n"),
                   "3: column 1 of the matrix K has 1 numbers from row 1, but declares 5 words."));
   EXPECT_TRUE(has(op4(op4_head + "       1       4       1\n 4.0E+00\n"), "3: row or column 4 is outside the matrix"));
@@ -222,13 +232,15 @@ TEST_F(FeReaders, CalculixRefusesWithLineAndElement) {
   EXPECT_TRUE(has(frd("    1C\n"), "the file has no nodes: it has no block 2C."));
 }
 
-std::string const hb_head = "Stiffness matrix from ANSYS FULL file dumped into Harwell-Boeing format         \n"
-                            "            14             4             5             5             0\n";
+std::string const hb_head =
+    "Stiffness matrix from ANSYS FULL file dumped into Harwell-Boeing format         \n"
+    "            14             4             5             5             0\n";
 std::string const hb_formats = "(4I8)           (5I8)           (1P,3E12.4)         \n";
 
 TEST_F(FeReaders, AnsysReadsHarwellBoeing) {
-  std::string const mapping = files.put("map", "    Matrix Eqn          Node    DOF     \n             1             7    UZ\n"
-                                               "             2             7    UX\n             3             7    UY\n");
+  std::string const mapping = files.put("map",
+                                        "    Matrix Eqn          Node    DOF     \n             1             7    UZ\n"
+                                        "             2             7    UX\n             3             7    UY\n");
   auto const reader = [&](std::string const& path) { return read_ansys_matrix(path, mapping, one_node()); };
   // equations z, x, y of the matrix `three`: 6, 0, 2; 4, −1; 5
   EXPECT_EQ(read(hb_head + "RSA                        3             3             5             0\n" + hb_formats +
@@ -239,8 +251,10 @@ TEST_F(FeReaders, AnsysReadsHarwellBoeing) {
   auto const told = [&](std::string const& text) {
     return refused(text, [&] { read_ansys_matrix(file, mapping, one_node()); });
   };
-  std::string const size = "RSA                        3             3             5             0\n", all = hb_head + size;
-  EXPECT_TRUE(has(told(hb_head + "PSA" + size.substr(3)), "3: the type of the matrix is \"PSA\", but must be RSA or RUA"));
+  std::string const size = "RSA                        3             3             5             0\n",
+                    all = hb_head + size;
+  EXPECT_TRUE(
+      has(told(hb_head + "PSA" + size.substr(3)), "3: the type of the matrix is \"PSA\", but must be RSA or RUA"));
   EXPECT_TRUE(has(told(hb_head + "RSA    3  2  5\n"), "3: the matrix is 3×2 with 5 entries, but must be square."));
   EXPECT_TRUE(has(told(hb_head + "RSA    3  3\n"), "3: the line lacks the numbers of rows, columns and entries."));
   EXPECT_TRUE(has(told(all + "(4X8)   \n"), "4: the line must have formats such as (10I8) (10I8) (3D25.15)."));
@@ -253,8 +267,9 @@ TEST_F(FeReaders, AnsysReadsHarwellBoeing) {
   EXPECT_TRUE(has(told(head + starts + "       1       3       2       3       3\n  6.0000E+00\n"),
                   "the file ends after 1 of 5 numbers; it is truncated."));
   EXPECT_TRUE(has(told(head + "       1       3       5      x6\n"), "5: \"x6\" is not the start of a column."));
-  EXPECT_TRUE(has(told(hb_head + "RSA                        2             2             5             0\n" + hb_formats),
-                  "the matrix has 2 rows, but "));
+  EXPECT_TRUE(
+      has(told(hb_head + "RSA                        2             2             5             0\n" + hb_formats),
+          "the matrix has 2 rows, but "));
 }
 
 TEST_F(FeReaders, AnsysRefusesOtherUnknownsAndRotatedNodes) {
@@ -264,17 +279,21 @@ TEST_F(FeReaders, AnsysRefusesOtherUnknownsAndRotatedNodes) {
   std::string const head = "    Matrix Eqn          Node    DOF     \n";
   EXPECT_TRUE(has(told(head + "             1             7    TEMP\n"),
                   "2: \"TEMP\" is no displacement; the names are UX, UY and UZ."));
-  EXPECT_TRUE(has(told(head + "             2             7    UX\n"), "2: the equation 2 is out of order; the next one is 1."));
+  EXPECT_TRUE(has(told(head + "             2             7    UX\n"),
+                  "2: the equation 2 is out of order; the next one is 1."));
   EXPECT_TRUE(has(told(head + "             1             8    UX\n"), "2: node 8 is not among the 1 nodes of nodes."));
   EXPECT_TRUE(has(told(head + "   1   7\n"), "2: \"   1   7\" is not equation, node and name of a displacement."));
   EXPECT_TRUE(has(told(head), "the file has no lines with equation, node and name of a displacement."));
-  files.put("file", "NBLOCK,6,SOLID\n(3i9,6e21.13e3)\n        9        0        0 1.0000000000000E+000\n"
-                    "        7        0        0\n-1\n");
+  files.put("file",
+            "NBLOCK,6,SOLID\n(3i9,6e21.13e3)\n        9        0        0 1.0000000000000E+000\n"
+            "        7        0        0\n-1\n");
   FeNodes const n = read_ansys_nodes(file);  // zeros at the end of a line are missing
   EXPECT_EQ(n.labels, (std::vector<Index>{7, 9}));
   EXPECT_EQ(n.positions[1], Vec3(1, 0, 0));
-  EXPECT_TRUE(has(ansys_nodes("NBLOCK,6,SOLID\n(3i9)\n"), "2: \"(3i9)\" is not a format of NBLOCK such as (3i9,6e21.13e3)."));
-  EXPECT_TRUE(has(ansys_nodes("NBLOCK,6\n(1i3,6e4.1)\n  7 1.0 2.0 3.0 0.0 0.0 9.0\n-1\n"), "3: node 7 has rotated axes"));
+  EXPECT_TRUE(
+      has(ansys_nodes("NBLOCK,6,SOLID\n(3i9)\n"), "2: \"(3i9)\" is not a format of NBLOCK such as (3i9,6e21.13e3)."));
+  EXPECT_TRUE(
+      has(ansys_nodes("NBLOCK,6\n(1i3,6e4.1)\n  7 1.0 2.0 3.0 0.0 0.0 9.0\n-1\n"), "3: node 7 has rotated axes"));
   EXPECT_TRUE(has(ansys_nodes("  NODE  X  Y  Z\n 1 0.0 0.0\n"), "2: \" 1 0.0 0.0\" is not node, x, y, z"));
   EXPECT_TRUE(has(ansys_nodes("  NODE  X  Y  Z\n 1 0.0 0.0 a\n"), "2: \"a\" is not a coordinate of a node"));
   EXPECT_TRUE(has(ansys_nodes("/PREP7\n"), "the file has no nodes: it has no NBLOCK and no table NODE X Y Z."));
@@ -282,10 +301,12 @@ TEST_F(FeReaders, AnsysRefusesOtherUnknownsAndRotatedNodes) {
 
 TEST_F(FeReaders, MatrixMarketWithOneTriangleIsReadAsSymmetricAndReported) {
   std::string const lower = "3 3 5\n1 1 4\n2 1 -1\n2 2 5\n3 2 2\n3 3 6\n";
-  FeMatrix m = read_matrix_market(files.put("file", "%%MatrixMarket matrix coordinate real general\n" + lower), one_node());
+  FeMatrix m =
+      read_matrix_market(files.put("file", "%%MatrixMarket matrix coordinate real general\n" + lower), one_node());
   EXPECT_EQ(MatX(m.entries), three());
   ASSERT_EQ(m.remarks.size(), 1u);
-  EXPECT_TRUE(has(m.remarks[0], file + ": the upper triangle of the matrix is zero; the matrix is read as a symmetric one"));
+  EXPECT_TRUE(
+      has(m.remarks[0], file + ": the upper triangle of the matrix is zero; the matrix is read as a symmetric one"));
   m = read_matrix_market(files.put("file", "%%MatrixMarket matrix coordinate real symmetric\n" + lower), one_node());
   EXPECT_EQ(MatX(m.entries), three());
   EXPECT_TRUE(m.remarks.empty());

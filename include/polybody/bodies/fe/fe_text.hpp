@@ -99,7 +99,7 @@ class FeText {
   explicit FeText(std::string const& file) : file_(file), lines_(file, '\0') {}
 
   std::string const& file() const { return file_; }
-  Index line() const { return lines_.line() - (kept_ ? 1 : 0); }
+  Index line() const { return lines_.line() - (kept_ && got_ ? 1 : 0); }
   /// Reads the next line; returns false at the end of the file.
   bool next(std::string& line) {
     if (kept_) {
