@@ -66,10 +66,15 @@ class NumberReader {
     if (!(read(words, values) && ...) || (words >> rest)) fail("\"" + line.substr(0, 60) + "\" is not " + expected);
     return true;
   }
+  Index line() const { return line_; }  ///< number of the last line, counted from 1
   /// Reports an error.
+  /// \throws IoError with the file, the last line and `what`.
+  [[noreturn, gnu::cold]] void fail(std::string const& what) const { fail_at(line_, what); }
+  /// Reports an error in an earlier line, or in the whole file if `line` is zero.
   /// \throws IoError with the file, the line and `what`.
-  [[noreturn, gnu::cold]] void fail(std::string const& what) const {
-    throw IoError("file.content", {ErrorObject{file_}, ", line ", line_, ": ", what, "."});
+  [[noreturn, gnu::cold]] void fail_at(Index line, std::string const& what) const {
+    if (line == 0) throw IoError("file.content", {ErrorObject{file_}, ": ", what, "."});
+    throw IoError("file.content", {ErrorObject{file_}, ", line ", line, ": ", what, "."});
   }
 
  private:
