@@ -3,11 +3,11 @@
 /// Rigid motions in space, the group SE(3): exponential map, logarithm, tangent operators and their derivatives,
 /// accurate near zero.
 ///
-/// Convention: a motion H = (A, r) carries the point u to r + A u. Vectors of its Lie algebra are screws (p, φ) with the
-/// translation first. Increments act on the right, H exp(δ), so that Ḣ = H V has the twist V = (Aᵀ ṙ, Ω) in body axes.
-/// All operators on screws are matrices [X, Y; 0, X] of 6×6, where X is the operator on rotations, and Y its derivative
-/// for φ in the direction p: SE(3) follows from SO(3) by dual numbers φ + ε p [Brodsky & Shoham 1999; Sonneville,
-/// Cardona & Brüls 2014, App. A].
+/// Convention: a motion H = (A, r) carries the point u to r + A u. Vectors of its Lie algebra are screws (p, φ) with
+/// the translation first. Increments act on the right, H exp(δ), so that Ḣ = H V has the twist V = (Aᵀ ṙ, Ω) in body
+/// axes. All operators on screws are matrices [X, Y; 0, X] of 6×6, where X is the operator on rotations, and Y its
+/// derivative for φ in the direction p: SE(3) follows from SO(3) by dual numbers φ + ε p [Brodsky & Shoham 1999;
+/// Sonneville, Cardona & Brüls 2014, App. A].
 
 #include <array>
 
@@ -100,14 +100,28 @@ template <class T>
 ScrewMap<T> blockwise_transposed(ScrewMap<T> const& a) {
   return {transposed(a.diagonal), transposed(a.coupling)};
 }
-/// Map a + s b for the number `s`.
+/// Sum a + b of maps of screws.
 template <class T>
-ScrewMap<T> sum(ScrewMap<T> a, ScrewMap<T> const& b, double s = 1.0) {
+ScrewMap<T> sum(ScrewMap<T> a, ScrewMap<T> const& b) {
   for (int i = 0; i < 9; ++i) {
-    a.diagonal.data()[i] += b.diagonal.data()[i] * s;
-    a.coupling.data()[i] += b.coupling.data()[i] * s;
+    a.diagonal.data()[i] += b.diagonal.data()[i];
+    a.coupling.data()[i] += b.coupling.data()[i];
   }
   return a;
+}
+/// Map s a for the number `s`.
+template <class T>
+ScrewMap<T> scaled(ScrewMap<T> a, double s) {
+  for (int i = 0; i < 9; ++i) {
+    a.diagonal.data()[i] *= s;
+    a.coupling.data()[i] *= s;
+  }
+  return a;
+}
+/// Map y → [x, y] of the screw x.
+template <class T>
+ScrewMap<T> bracket_map(Screw<T> const& x) {
+  return {skew<T>(x.rotation), skew<T>(x.translation)};
 }
 
 /// Coefficients f, g of the operator 1 + f φ̃ + g φ̃² on rotations, and their derivatives with respect to x = |φ|².
@@ -138,9 +152,9 @@ class SineSeries {
       for (int n = 1; n < 6; ++n) s_[n + 2] = (inverse(n) - s_[n]) / x;
     }
   }
-  T const& operator[](int n) const { return s_[n]; }                                          ///< s_n
-  T slope(int n) const { return 0.5 * (double(n) * s_[n + 2] - s_[n + 1]); }                  ///< s_n′
-  T second(int n) const { return 0.5 * (double(n) * slope(n + 2) - slope(n + 1)); }           ///< s_n″
+  T const& operator[](int n) const { return s_[n]; }                                 ///< s_n
+  T slope(int n) const { return 0.5 * (double(n) * s_[n + 2] - s_[n + 1]); }         ///< s_n′
+  T second(int n) const { return 0.5 * (double(n) * slope(n + 2) - slope(n + 1)); }  ///< s_n″
 
  private:
   static constexpr double inverse(int n) {
@@ -205,8 +219,7 @@ template <class T>
 OperatorSeries<T> tangent_inverse_series(T const& x) {
   T e, de, dde;
   if (value_of(x) < 4.0) {
-    auto const p =
-        value_of(x) < 0.04 ? detail::cotangent_polynomial<8, T>(x) : detail::cotangent_polynomial<20, T>(x);
+    auto const p = value_of(x) < 0.04 ? detail::cotangent_polynomial<8, T>(x) : detail::cotangent_polynomial<20, T>(x);
     e = p[0];
     de = p[1];
     dde = 2.0 * p[2];
@@ -265,8 +278,8 @@ Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, Screw<T> con
                      both_p = skew_of_skew(p, y);
   Mat<T, 3, 3> m;
   for (int i = 0; i < 3; ++i) {
-    T const of_phi = 2.0 * (c.df * by_p[i] + c.dg * (mixed1[i] + mixed2[i])) +
-                     2.0 * twofold * (c.ddf * once[i] + c.ddg * twice[i]);
+    T const of_phi =
+        2.0 * (c.df * by_p[i] + c.dg * (mixed1[i] + mixed2[i])) + 2.0 * twofold * (c.ddf * once[i] + c.ddg * twice[i]);
     T const of_p = 2.0 * (c.df * once[i] + c.dg * twice[i]);
     for (int j = 0; j < 3; ++j)
       m(i, j) = of_phi * phi[j] + of_p * p[j] - twofold * (c.df * of_y(i, j) + c.dg * (of_once(i, j) + both(i, j))) -

@@ -96,7 +96,8 @@ TEST(Se3, InverseTangentUndoesTheTangent) {
   }
 }
 
-// Ad(H) = [A, r̃ A; 0, A] of H = exp(d), T(−d) = Ad(exp(d)) T(d), and blockwise transposition is the change of sign of d.
+// Ad(H) = [A, r̃ A; 0, A] of H = exp(d), T(−d) = Ad(exp(d)) T(d), and blockwise transposition is the change of sign of
+// d.
 TEST(Se3, AdjointMapAndOppositeMotions) {
   for (double const angle : angles) {
     auto const d = screw(angle), back = opposite(d);
@@ -167,8 +168,9 @@ TEST(Se3, DerivativesOfTheCoefficients) {
   for (double const x : {0.0, 1e-6, 0.03, 0.05, 1.0, 3.9, 4.1, 9.0, 25.0})
     for (int kind = 0; kind < 3; ++kind) {
       D const at = D::variable(x, 0);
-      OperatorSeries<D> const s = kind == 0 ? exp_series<D>(at) : kind == 1 ? tangent_series<D>(at)
-                                                                             : tangent_inverse_series<D>(at);
+      OperatorSeries<D> const s = kind == 0   ? exp_series<D>(at)
+                                  : kind == 1 ? tangent_series<D>(at)
+                                              : tangent_inverse_series<D>(at);
       double const size = kind == 2 && x > 20.0 ? 10.0 : 1.0;  // cot(θ/2) grows towards 2π
       EXPECT_NEAR(s.f.d[0], s.df.v, 1e-15 * size) << x << ", " << kind;
       EXPECT_NEAR(s.g.d[0], s.dg.v, 1e-15 * size) << x << ", " << kind;
