@@ -17,30 +17,30 @@ namespace polybody {
 
 /// Element (p, φ) of se(3): a motion [m], [rad], its rate, or a twist (U, Ω) in body axes [m/s], [rad/s].
 template <class T>
-struct Screw {
+struct ScrewVector {
   Vec<T, 3> translation;  ///< (3) p, or the velocity U
   Vec<T, 3> rotation;     ///< (3) φ, or the angular velocity Ω
 };
 
 /// Screw −x.
 template <class T>
-Screw<T> opposite(Screw<T> const& x) {
+ScrewVector<T> opposite(ScrewVector<T> const& x) {
   return {scaled<T>(x.translation, -1.0), scaled<T>(x.rotation, -1.0)};
 }
 /// Screw s x for the number `s`.
 template <class T>
-Screw<T> scaled(Screw<T> const& x, double s) {
+ScrewVector<T> scaled(ScrewVector<T> const& x, double s) {
   return {scaled<T>(x.translation, s), scaled<T>(x.rotation, s)};
 }
 /// Difference x − y of screws.
 template <class T>
-Screw<T> difference(Screw<T> const& x, Screw<T> const& y) {
+ScrewVector<T> difference(ScrewVector<T> const& x, ScrewVector<T> const& y) {
   return {difference<T>(x.translation, y.translation), difference<T>(x.rotation, y.rotation)};
 }
 /// Sum x + y of screws.
 template <class T>
-Screw<T> sum(Screw<T> const& x, Screw<T> const& y) {
-  Screw<T> out = x;
+ScrewVector<T> sum(ScrewVector<T> const& x, ScrewVector<T> const& y) {
+  ScrewVector<T> out = x;
   for (int i = 0; i < 3; ++i) {
     out.translation[i] += y.translation[i];
     out.rotation[i] += y.rotation[i];
@@ -49,7 +49,7 @@ Screw<T> sum(Screw<T> const& x, Screw<T> const& y) {
 }
 /// Lie bracket [x, y] = (φ × y_p + p × y_φ, φ × y_φ) of screws x = (p, φ) and y.
 template <class T>
-Screw<T> bracket(Screw<T> const& x, Screw<T> const& y) {
+ScrewVector<T> bracket(ScrewVector<T> const& x, ScrewVector<T> const& y) {
   Vec<T, 3> const a = cross(x.rotation, y.translation), b = cross(x.translation, y.rotation);
   return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}, cross(x.rotation, y.rotation)};
 }
@@ -61,14 +61,14 @@ struct ScrewMap {
   Mat<T, 3, 3> coupling;  ///< Y
 
   /// Screw (X p + Y φ, X φ).
-  Screw<T> operator()(Screw<T> const& x) const {
+  ScrewVector<T> operator()(ScrewVector<T> const& x) const {
     Vec<T, 3> p = product(diagonal, x.translation);
     Vec<T, 3> const more = product(coupling, x.rotation);
     for (int i = 0; i < 3; ++i) p[i] += more[i];
     return {p, product(diagonal, x.rotation)};
   }
   /// Transposed map of a wrench w = (f; m), with the force in `translation`: (Xᵀ f, Yᵀ f + Xᵀ m).
-  Screw<T> pull(Screw<T> const& w) const {
+  ScrewVector<T> pull(ScrewVector<T> const& w) const {
     Vec<T, 3> m = transposed_product(diagonal, w.rotation);
     Vec<T, 3> const more = transposed_product(coupling, w.translation);
     for (int i = 0; i < 3; ++i) m[i] += more[i];
@@ -120,7 +120,7 @@ ScrewMap<T> scaled(ScrewMap<T> a, double s) {
 }
 /// Map y → [x, y] of the screw x.
 template <class T>
-ScrewMap<T> bracket_map(Screw<T> const& x) {
+ScrewMap<T> bracket_map(ScrewVector<T> const& x) {
   return {skew<T>(x.rotation), skew<T>(x.translation)};
 }
 
@@ -250,7 +250,7 @@ Mat<T, 3, 3> operator_slope(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Ve
 }
 /// Operator on screws whose diagonal blocks are 1 + f φ̃ + g φ̃², at d = (p, φ).
 template <class T>
-ScrewMap<T> screw_operator(OperatorSeries<T> const& c, Screw<T> const& d) {
+ScrewMap<T> screw_operator(OperatorSeries<T> const& c, ScrewVector<T> const& d) {
   return {one_and_skew<T>(d.rotation, c.f, c.g), operator_slope(c, d.rotation, d.translation)};
 }
 
@@ -269,7 +269,7 @@ Mat<T, 3, 3> operator_derivative(OperatorSeries<T> const& c, Vec<T, 3> const& ph
 }
 /// Derivative of D₀(φ, y) for φ in the direction p, at constant y (3×3).
 template <class T>
-Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, Screw<T> const& d, Vec<T, 3> const& y) {
+Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, Vec<T, 3> const& y) {
   Vec<T, 3> const &p = d.translation, &phi = d.rotation;
   T const twofold = 2.0 * dot(phi, p);
   Vec<T, 3> const once = cross(phi, y), twice = cross(phi, once), by_p = cross(p, y);
@@ -289,7 +289,7 @@ Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, Screw<T> con
 }
 /// Derivative with respect to d of the product of an operator on screws at d with the constant screw y.
 template <class T>
-ScrewMap<T> screw_operator_derivative(OperatorSeries<T> const& c, Screw<T> const& d, Screw<T> const& y) {
+ScrewMap<T> screw_operator_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, ScrewVector<T> const& y) {
   ScrewMap<T> out{operator_derivative(c, d.rotation, y.rotation), operator_derivative(c, d.rotation, y.translation)};
   Mat<T, 3, 3> const more = operator_second_derivative(c, d, y.rotation);
   for (int i = 0; i < 9; ++i) out.coupling.data()[i] += more.data()[i];
@@ -298,46 +298,46 @@ ScrewMap<T> screw_operator_derivative(OperatorSeries<T> const& c, Screw<T> const
 
 /// Tangent operator T(d) of SE(3), the right Jacobian: exp(d)⁻¹ d/dt exp(d) = T(d) ḋ.
 template <class T>
-ScrewMap<T> se3_tangent(Screw<T> const& d) {
+ScrewMap<T> se3_tangent(ScrewVector<T> const& d) {
   return screw_operator<T>(tangent_series<T>(squared_norm(d.rotation)), d);
 }
 /// Inverse tangent operator T⁻¹(d), for |φ| < 2π.
 template <class T>
-ScrewMap<T> se3_tangent_inverse(Screw<T> const& d) {
+ScrewMap<T> se3_tangent_inverse(ScrewVector<T> const& d) {
   return screw_operator<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d);
 }
 /// Derivative ∂(T(d) y)/∂d at constant y.
 template <class T>
-ScrewMap<T> se3_tangent_derivative(Screw<T> const& d, Screw<T> const& y) {
+ScrewMap<T> se3_tangent_derivative(ScrewVector<T> const& d, ScrewVector<T> const& y) {
   return screw_operator_derivative<T>(tangent_series<T>(squared_norm(d.rotation)), d, y);
 }
 /// Derivative ∂(T⁻¹(d) y)/∂d at constant y.
 template <class T>
-ScrewMap<T> se3_tangent_inverse_derivative(Screw<T> const& d, Screw<T> const& y) {
+ScrewMap<T> se3_tangent_inverse_derivative(ScrewVector<T> const& d, ScrewVector<T> const& y) {
   return screw_operator_derivative<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d, y);
 }
 /// Adjoint map Ad(exp(d)) = [A, r̃ A; 0, A] of screws, for the motion (A, r) = exp(d).
 template <class T>
-ScrewMap<T> se3_adjoint(Screw<T> const& d) {
+ScrewMap<T> se3_adjoint(ScrewVector<T> const& d) {
   return screw_operator<T>(exp_series<T>(squared_norm(d.rotation)), d);
 }
 
 /// Rigid motion H = (A, r).
 template <class T = double>
-struct Motion {
+struct RigidMotion {
   Vec<T, 3> r;     ///< (3) displacement [m]
   Mat<T, 3, 3> A;  ///< (3×3) rotation matrix
 };
 /// Exponential map exp(d) = (exp(φ̃), Jl(φ) p), Jl(φ) = Jr(−φ).
 template <class T>
-Motion<T> exp_se3(Screw<T> const& d) {
+RigidMotion<T> exp_se3(ScrewVector<T> const& d) {
   detail::SineSeries<T> const s(squared_norm(d.rotation));
   return {product(one_and_skew<T>(d.rotation, s[2], s[3]), d.translation), one_and_skew<T>(d.rotation, s[1], s[2])};
 }
 /// Logarithm of the motion with displacement `r` (3) [m] and rotation `a`, a unit quaternion: d = (Jl⁻¹(φ) r, φ), with
 /// |φ| ≤ π.
 template <class T>
-Screw<T> log_se3(Vec<T, 3> const& r, Quaternion<T> const& a) {
+ScrewVector<T> log_se3(Vec<T, 3> const& r, Quaternion<T> const& a) {
   Vec<T, 3> const phi = quaternion_log<T>(a);
   OperatorSeries<T> const c = tangent_inverse_series<T>(squared_norm(phi));
   return {product(one_and_skew<T>(phi, -c.f, c.g), r), phi};

@@ -15,19 +15,19 @@ using D = Dual<1>;
 /// Angles around zero, around the ends of the series (0.2 and 2), and up to π.
 std::vector<double> const angles = {0.0, 1e-9, 1e-4, 0.1, 0.199, 0.201, 0.7, 1.9, 1.999, 2.001, 2.5, 3.1};
 
-Screw<double> screw(double angle) { return {Vec3(0.9, -0.4, 1.3), angle * Vec3(0.6, -0.48, 0.64)}; }
-Vec6 vector(Screw<double> const& x) { return (Vec6() << x.translation, x.rotation).finished(); }
-Screw<double> screw_of(Vec6 const& x) { return {x.head<3>(), x.tail<3>()}; }
+ScrewVector<double> screw(double angle) { return {Vec3(0.9, -0.4, 1.3), angle * Vec3(0.6, -0.48, 0.64)}; }
+Vec6 vector(ScrewVector<double> const& x) { return (Vec6() << x.translation, x.rotation).finished(); }
+ScrewVector<double> screw_of(Vec6 const& x) { return {x.head<3>(), x.tail<3>()}; }
 
-Screw<D> along(Screw<double> const& x, Screw<double> const& rate) {
-  Screw<D> out;
+ScrewVector<D> along(ScrewVector<double> const& x, ScrewVector<double> const& rate) {
+  ScrewVector<D> out;
   for (int i = 0; i < 3; ++i) {
     out.translation[i] = D(x.translation[i], D::Partials(rate.translation[i]));
     out.rotation[i] = D(x.rotation[i], D::Partials(rate.rotation[i]));
   }
   return out;
 }
-Vec6 slope_of(Screw<D> const& x) {
+Vec6 slope_of(ScrewVector<D> const& x) {
   Vec6 out;
   for (int i = 0; i < 3; ++i) {
     out[i] = x.translation[i].d[0];
@@ -35,16 +35,16 @@ Vec6 slope_of(Screw<D> const& x) {
   }
   return out;
 }
-Screw<D> constant(Screw<double> const& x) { return along(x, {Vec3::Zero(), Vec3::Zero()}); }
+ScrewVector<D> constant(ScrewVector<double> const& x) { return along(x, {Vec3::Zero(), Vec3::Zero()}); }
 
 /// Homogeneous matrix of a motion, and the matrix of a screw.
-Mat<double, 4, 4> matrix(Motion<double> const& h) {
+Mat<double, 4, 4> matrix(RigidMotion<double> const& h) {
   Mat<double, 4, 4> m = Mat<double, 4, 4>::Identity();
   m.topLeftCorner<3, 3>() = h.A;
   m.topRightCorner<3, 1>() = h.r;
   return m;
 }
-Mat<double, 4, 4> matrix(Screw<double> const& d) {
+Mat<double, 4, 4> matrix(ScrewVector<double> const& d) {
   Mat<double, 4, 4> m = Mat<double, 4, 4>::Zero();
   m.topLeftCorner<3, 3>() = skew<double>(d.rotation);
   m.topRightCorner<3, 1>() = d.translation;
@@ -75,7 +75,7 @@ TEST(Se3, LogOfExpIsIdentity) {
 TEST(Se3, TangentIsTheBodyTwistOfExp) {
   for (double const angle : angles)
     for (int k = 0; k < 6; ++k) {
-      Screw<double> const rate = screw_of(Vec6::Unit(k)), d = screw(angle);
+      ScrewVector<double> const rate = screw_of(Vec6::Unit(k)), d = screw(angle);
       auto const moving = exp_se3<D>(along(d, rate));
       auto const h = exp_se3<double>(d);
       Mat3 const a = h.A.transpose() * moving.A.unaryExpr([](D const& x) { return x.d[0]; });
@@ -125,7 +125,8 @@ TEST(Se3, BracketIsTheDerivativeOfTheAdjointMap) {
 
 /// Compares a map of screws with dual numbers, and with differences of f.
 template <class F, class G>
-void expect_derivative(ScrewMap<double> const& map, Screw<double> const& d, F&& of_dual, G&& of_double, double angle) {
+void expect_derivative(ScrewMap<double> const& map, ScrewVector<double> const& d, F&& of_dual, G&& of_double,
+                       double angle) {
   for (int k = 0; k < 6; ++k) {
     Vec6 const unit = Vec6::Unit(k), expected = vector(map(screw_of(unit)));
     EXPECT_LT((slope_of(of_dual(along(d, screw_of(unit)))) - expected).norm(), 1e-13) << angle << ", " << k;
@@ -136,7 +137,7 @@ void expect_derivative(ScrewMap<double> const& map, Screw<double> const& d, F&& 
 }
 
 TEST(Se3, DerivativesOfTheTangentOperators) {
-  Screw<double> const y = screw_of((Vec6() << 0.3, 0.5, -0.8, 0.2, -1.1, 0.4).finished());
+  ScrewVector<double> const y = screw_of((Vec6() << 0.3, 0.5, -0.8, 0.2, -1.1, 0.4).finished());
   for (double const angle : angles) {
     auto const d = screw(angle);
     expect_derivative(

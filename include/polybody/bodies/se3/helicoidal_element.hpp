@@ -32,10 +32,10 @@ class HelicoidalSection {
     }
   }
 
-  double length() const { return l_; }    ///< arc length of an element [m]
-  bool damped() const { return damped_; }  ///< true if a damping time is not zero
-  double time(int i) const { return time_[i]; }                          ///< damping time of strain i [s]
-  double spring(int i) const { return stiffness_[i] / l_; }              ///< stiffness of strain i divided by l
+  double length() const { return l_; }                       ///< arc length of an element [m]
+  bool damped() const { return damped_; }                    ///< true if a damping time is not zero
+  double time(int i) const { return time_[i]; }              ///< damping time of strain i [s]
+  double spring(int i) const { return stiffness_[i] / l_; }  ///< stiffness of strain i divided by l
   /// Section forces (N, M) for the strains ε (6), without damping [N], [N m].
   template <class T = double>  // compiled only if used
   Vec<T, 6> forces(Vec<T, 6> const& strains) const {
@@ -63,25 +63,24 @@ class HelicoidalSection {
 /// Velocities of the nodes of an element.
 template <class T>
 struct NodeVelocities {
-  Vec<T, 3> apart;    ///< ṙ₂ − ṙ₁ in the axes of node 1 [m/s]
+  Vec<T, 3> apart;   ///< ṙ₂ − ṙ₁ in the axes of node 1 [m/s]
   Vec<T, 3> w1, w2;  ///< Ω₁, Ω₂ [rad/s]
 };
 
 /// Element between two frames in a state: relative motion d, the operator T⁻¹(d), and the section forces.
 template <StateScalar T>
 struct HelicoidalElement {
-  Mat<T, 3, 3> R;          ///< R₁, axes of node 1 in world axes
-  Screw<T> d;              ///< d = log(H₁⁻¹ H₂) [m], [rad]
+  Mat<T, 3, 3> R;            ///< R₁, axes of node 1 in world axes
+  ScrewVector<T> d;          ///< d = log(H₁⁻¹ H₂) [m], [rad]
   OperatorSeries<T> series;  ///< coefficients of T⁻¹(d)
-  ScrewMap<T> inverse;     ///< T⁻¹(d)
-  Vec<T, 3> n, m;          ///< N and M, set by `set_forces` [N], [N m]
+  ScrewMap<T> inverse;       ///< T⁻¹(d)
+  Vec<T, 3> n, m;            ///< N and M, set by `set_forces` [N], [N m]
 
   /// Element of the nodes at `first` and `first + 7` of q.
   HelicoidalElement(std::span<T const> q, Index first) {
     Quaternion<T> const a = entries<4>(q, first + 3), b = entries<4>(q, first + 10);
     set_rotation<T>(a, R);
-    Vec<T, 3> const chord =
-        transposed_product<T>(R, difference<T>(entries<3>(q, first + 7), entries<3>(q, first)));
+    Vec<T, 3> const chord = transposed_product<T>(R, difference<T>(entries<3>(q, first + 7), entries<3>(q, first)));
     d.rotation = quaternion_minus<T>(b, a);
     series = tangent_inverse_series<T>(squared_norm(d.rotation));
     inverse.diagonal = one_and_skew<T>(d.rotation, series.f, series.g);
@@ -95,16 +94,18 @@ struct HelicoidalElement {
             entries<3>(v, first + 3), entries<3>(v, first + 9)};
   }
   /// Rate ḋ = (Xᵀ u + Y Ω₂ − Yᵀ Ω₁, X Ω₂ − Xᵀ Ω₁), u = R₁ᵀ (ṙ₂ − ṙ₁).
-  Screw<T> rate(NodeVelocities<T> const& v) const {
+  ScrewVector<T> rate(NodeVelocities<T> const& v) const {
     Vec<T, 3> const p = transposed_product<T>(inverse.diagonal, v.apart), y2 = product(inverse.coupling, v.w2),
                     y1 = transposed_product<T>(inverse.coupling, v.w1);
-    Screw<T> out{p, difference<T>(product(inverse.diagonal, v.w2), transposed_product<T>(inverse.diagonal, v.w1))};
+    ScrewVector<T> out{p,
+                       difference<T>(product(inverse.diagonal, v.w2), transposed_product<T>(inverse.diagonal, v.w1))};
     for (int i = 0; i < 3; ++i) out.translation[i] += y2[i] - y1[i];
     return out;
   }
   /// Section forces C (d − d₀ + τ ḋ)/l, and the pretension. `free` is d₀.
-  void set_forces(HelicoidalSection const& section, Screw<double> const& free, NodeVelocities<T> const& v) {
-    Screw<T> const rates = section.damped() ? rate(v) : Screw<T>{detail::zeros<Vec<T, 3>>(), detail::zeros<Vec<T, 3>>()};
+  void set_forces(HelicoidalSection const& section, ScrewVector<double> const& free, NodeVelocities<T> const& v) {
+    ScrewVector<T> const rates =
+        section.damped() ? rate(v) : ScrewVector<T>{detail::zeros<Vec<T, 3>>(), detail::zeros<Vec<T, 3>>()};
     for (int i = 0; i < 3; ++i) {
       n[i] = d.translation[i] - free.translation[i];
       m[i] = d.rotation[i] - free.rotation[i];

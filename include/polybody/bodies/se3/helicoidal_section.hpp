@@ -19,7 +19,7 @@ struct HelicoidalPoint {
   Mat<T, 3, 3> R1, R2;     ///< axes of the nodes in world axes
   Mat<T, 3, 3> R;          ///< axes of the section in world axes
   Vec<T, 3> r;             ///< position of the section on the axis, world axes [m]
-  Screw<T> d, part;        ///< d, ξd
+  ScrewVector<T> d, part;  ///< d, ξd
   ScrewMap<T> tangent;     ///< T(ξd)
   ScrewMap<T> inverse;     ///< T⁻¹(d)
   ScrewMap<T> carry;       ///< Ad(exp(−ξd))
@@ -50,43 +50,43 @@ struct HelicoidalPoint {
   bool inside() const { return xi != 0.0 && xi != 1.0; }
 
   /// Twists V₁, V₂ of the nodes in their axes, for the velocities of the element from entry `first` of v.
-  std::array<Screw<T>, 2> twists(std::span<T const> v, Index first) const {
-    return {Screw<T>{transposed_product<T>(R1, entries<3>(v, first)), entries<3>(v, first + 3)},
-            Screw<T>{transposed_product<T>(R2, entries<3>(v, first + 6)), entries<3>(v, first + 9)}};
+  std::array<ScrewVector<T>, 2> twists(std::span<T const> v, Index first) const {
+    return {ScrewVector<T>{transposed_product<T>(R1, entries<3>(v, first)), entries<3>(v, first + 3)},
+            ScrewVector<T>{transposed_product<T>(R2, entries<3>(v, first + 6)), entries<3>(v, first + 9)}};
   }
   /// Twist of the section for the twists of the nodes.
-  Screw<T> twist(std::array<Screw<T>, 2> const& nodes) const { return sum(P1(nodes[0]), P2(nodes[1])); }
+  ScrewVector<T> twist(std::array<ScrewVector<T>, 2> const& nodes) const { return sum(P1(nodes[0]), P2(nodes[1])); }
 
   /// Time derivative of the twist of the section for constant ṙ and Ω of the nodes, so that V˙₁ = (−Ω₁ × U₁, 0). The
   /// bracket [c, y] is that of screws, c = Ad(exp(−d)) V₁:
   ///   d̈ = T⁻¹(d) (V˙₂ − Ad(exp(−d)) V˙₁ + [V₂, c] − ∂(T(d) ḋ)/∂d ḋ),
   ///   V˙ = P₁ V˙₁ + P₂ V˙₂ + [Ad(exp(−ξd)) V₁, ξ T(ξd) ḋ] + ξ T(ξd) d̈′ + ξ² ∂(T(ξd) ḋ)/∂(ξd) ḋ,
   /// where d̈′ is d̈ for V˙₁ = V˙₂ = 0.
-  Screw<T> twist_rate(std::array<Screw<T>, 2> const& nodes) const {
-    Screw<T> const rate1 = node_rate(nodes[0]), rate2 = node_rate(nodes[1]);
-    Screw<T> const of_nodes = sum(P1(rate1), P2(rate2));
+  ScrewVector<T> twist_rate(std::array<ScrewVector<T>, 2> const& nodes) const {
+    ScrewVector<T> const rate1 = node_rate(nodes[0]), rate2 = node_rate(nodes[1]);
+    ScrewVector<T> const of_nodes = sum(P1(rate1), P2(rate2));
     if (!inside()) return of_nodes;
-    Screw<T> const rate = difference(inverse(nodes[1]), blockwise_transposed(inverse)(nodes[0]));
-    Screw<T> const carried = se3_adjoint<T>(opposite(d))(nodes[0]);
-    Screw<T> const turning = se3_tangent_derivative<T>(d, rate)(rate);
-    Screw<T> const second = tangent(inverse(difference(bracket(nodes[1], carried), turning)));
-    Screw<T> const relative = bracket(carry(nodes[0]), tangent(rate));
-    Screw<T> const by_part = se3_tangent_derivative<T>(part, rate)(rate);
+    ScrewVector<T> const rate = difference(inverse(nodes[1]), blockwise_transposed(inverse)(nodes[0]));
+    ScrewVector<T> const carried = se3_adjoint<T>(opposite(d))(nodes[0]);
+    ScrewVector<T> const turning = se3_tangent_derivative<T>(d, rate)(rate);
+    ScrewVector<T> const second = tangent(inverse(difference(bracket(nodes[1], carried), turning)));
+    ScrewVector<T> const relative = bracket(carry(nodes[0]), tangent(rate));
+    ScrewVector<T> const by_part = se3_tangent_derivative<T>(part, rate)(rate);
     return sum(sum(of_nodes, scaled(sum(relative, second), xi)), scaled(by_part, xi * xi));
   }
 
   /// Maps L₁₁, L₁₂, L₂₁, L₂₂ of δ(P_iᵀ w) = Σ L_ij V_j, for a constant wrench w in section axes and motions V_j of the
   /// nodes. Screws contain the moment of a wrench as translation and the force as rotation, x = (m, f):
   ///   P₂ᵀ w = T⁻¹(−d) y,  P₁ᵀ w = Ad(exp(ξd)) x − T⁻¹(d) y,  y = ξ T(−ξd) x,  δd = T⁻¹(d) V₂ − T⁻¹(−d) V₁.
-  std::array<ScrewMap<T>, 4> pull_derivatives(Screw<T> const& x) const {
+  std::array<ScrewMap<T>, 4> pull_derivatives(ScrewVector<T> const& x) const {
     ScrewMap<T> const back = blockwise_transposed(inverse);  // T⁻¹(−d)
-    Screw<T> const y = scaled(blockwise_transposed(tangent)(x), xi);
+    ScrewVector<T> const y = scaled(blockwise_transposed(tangent)(x), xi);
     ScrewMap<T> const by_y = scaled(se3_tangent_derivative<T>(opposite(part), x), -xi * xi);  // ∂y/∂d
     ScrewMap<T> const turned = product(blockwise_transposed(carry), product(bracket_map(x), tangent));
     ScrewMap<T> const of_first = sum(se3_tangent_inverse_derivative<T>(d, y), product(inverse, by_y));
     ScrewMap<T> const first = sum(scaled(turned, -xi), scaled(of_first, -1.0)),
-                      second = sum(product(back, by_y),
-                                   scaled(se3_tangent_inverse_derivative<T>(opposite(d), y), -1.0));
+                      second =
+                          sum(product(back, by_y), scaled(se3_tangent_inverse_derivative<T>(opposite(d), y), -1.0));
     return {scaled(product(first, back), -1.0), product(first, inverse), scaled(product(second, back), -1.0),
             product(second, inverse)};
   }
@@ -96,7 +96,7 @@ struct HelicoidalPoint {
   void place(Vec<T, 3> const& r1) {
     part = scaled(d, xi);
     T const x = squared_norm(part.rotation);
-    Motion<T> const relative = exp_se3<T>(part);
+    RigidMotion<T> const relative = exp_se3<T>(part);
     R = product(R1, relative.A);
     r = product(R1, relative.r);
     for (int i = 0; i < 3; ++i) r[i] += r1[i];
@@ -106,7 +106,9 @@ struct HelicoidalPoint {
     P2 = scaled(product(tangent, inverse), xi);
   }
   /// Rate (−Ω × U, 0) of the twist of a node with constant ṙ and Ω.
-  static Screw<T> node_rate(Screw<T> const& v) { return {cross(v.translation, v.rotation), detail::zeros<Vec<T, 3>>()}; }
+  static ScrewVector<T> node_rate(ScrewVector<T> const& v) {
+    return {cross(v.translation, v.rotation), detail::zeros<Vec<T, 3>>()};
+  }
 };
 
 }  // namespace polybody

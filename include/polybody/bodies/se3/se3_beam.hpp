@@ -24,8 +24,8 @@ namespace polybody {
 /// element must be less than π.
 class Se3Beam : public FrameChain {
  public:
-  static constexpr Index default_elements = 32;                   ///< number of elements of `from(bar)` (`BarMesh`)
-  static constexpr std::string_view family = "SE(3) beam";         ///< family in reports (`formulation_family`)
+  static constexpr Index default_elements = 32;             ///< number of elements of `from(bar)` (`BarMesh`)
+  static constexpr std::string_view family = "SE(3) beam";  ///< family in reports (`formulation_family`)
 
   /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
   struct Point {
@@ -124,7 +124,7 @@ class Se3Beam : public FrameChain {
                        MarkerKinematics<T>& out) const {
     HelicoidalPoint<T> const s(p.xi, q, 7 * p.element);
     auto const nodes = s.twists(v, 6 * p.element);
-    Screw<T> const twist = s.twist(nodes), rate = s.twist_rate(nodes);
+    ScrewVector<T> const twist = s.twist(nodes), rate = s.twist_rate(nodes);
     Vec<T, 3> const w = product(s.R, twist.rotation), carried = cross(twist.rotation, twist.translation);
     Vec<T, 3> slide, arm;
     for (int i = 0; i < 3; ++i) {
@@ -169,7 +169,8 @@ class Se3Beam : public FrameChain {
       for (int j = 0; j < 2; ++j) {
         ScrewMap<T> const &pi = i == 0 ? s.P1 : s.P2, &pj = j == 0 ? s.P1 : s.P2, &by = change[std::size_t(2 * i + j)];
         Mat<T, 3, 3> const f_turned = product(of_f, pj.diagonal), m_turned = product(of_moment, pj.diagonal);
-        Mat<T, 3, 3> force = transposed_product(pi.diagonal, f_turned), torque = transposed_product(pi.coupling, f_turned);
+        Mat<T, 3, 3> force = transposed_product(pi.diagonal, f_turned),
+                     torque = transposed_product(pi.coupling, f_turned);
         Mat<T, 3, 3> const more = transposed_product(pi.diagonal, m_turned),
                            own = skew<T>(transposed_product(pi.diagonal, f)),
                            by_r = product(by.diagonal, transposed(j == 0 ? s.R1 : s.R2));
@@ -198,7 +199,7 @@ class Se3Beam : public FrameChain {
   template <class T>  // compiled only if used
   void set_free(Index e, Mat<T, 3, 3> const& middle) {
     HelicoidalElement<T> const element(FrameChain::reference(), 7 * e);
-    Screw<T> const& d = free_[std::size_t(e)] = element.d;
+    ScrewVector<T> const& d = free_[std::size_t(e)] = element.d;
     double const l = element_length(), size = std::sqrt(squared_norm(d.translation));
     if (!(size > 1e-6 * l && size < (1.0 + 1e-6) * l))
       throw InvalidInput("reference_curve.arc_length",
@@ -227,7 +228,7 @@ class Se3Beam : public FrameChain {
   }
   template <class T>
   Vec<T, 6> strains(Index e, std::span<T const> q) const {
-    Screw<T> const d = difference(HelicoidalElement<T>(q, 7 * e).d, free_[std::size_t(e)]);
+    ScrewVector<T> const d = difference(HelicoidalElement<T>(q, 7 * e).d, free_[std::size_t(e)]);
     Vec<T, 6> out;
     for (int i = 0; i < 3; ++i) {
       out[i] = d.translation[i] / element_length();
@@ -256,7 +257,7 @@ class Se3Beam : public FrameChain {
   }
 
   HelicoidalSection section_;
-  std::vector<Screw<double>> free_;  ///< d₀ of each element
+  std::vector<ScrewVector<double>> free_;  ///< d₀ of each element
 };
 
 }  // namespace polybody
