@@ -1,0 +1,181 @@
+#pragma once
+/// \file
+/// Chain of two-node elements whose nodes are frames, with its inertia: the parts of `Se3Beam` that do not depend on
+/// its strains.
+
+#include <algorithm>
+#include <vector>
+
+#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/body.hpp>
+
+namespace polybody {
+
+/// Chain of n equal elements between n + 1 nodes. A node has the position r (3) in world axes and the unit quaternion
+/// (4) of its section as coordinates, and ṙ (3) and Ω (3) in section axes as generalised velocities. q ⊞ δ adds δr and
+/// rotates the section by exp(δθ).
+///
+/// The kinetic energy of an element of mass m = Aρ l is
+///   T = m/6 (ṙ₁·ṙ₁ + ṙ₁·ṙ₂ + ṙ₂·ṙ₂) + ½ Ω₁·J Ω₁ + ½ Ω₂·J Ω₂,  J = ½ l diag(Iρ_x, Iρ_y, Iρ_z).
+/// The translation is that of a straight rod between the nodes, so that a straight element has its exact inertia, and
+/// the mass and the momentum are exact in every state. M is constant. The inertia forces that depend on velocities are
+/// −Ω × J Ω at the nodes. Without any rotary inertia M is singular, which explicit methods do not permit.
+class FrameChain {
+ public:
+  static constexpr World world = World::space;
+  static constexpr MarkerKind observes = MarkerKind::frame;
+  static constexpr bool constant_mass = true;
+  static constexpr bool objective = true;
+  static constexpr int element_columns = 12;
+  static constexpr int point_columns = 12;
+  static constexpr int element_stride = 6;
+  static constexpr bool vectorised_kernels = false;
+  template <class T>
+  using Element = Vec<T, 12>;
+  using ElementMatrix = Mat<double, 12, 12>;
+
+  double length() const { return length_; }
+  double element_length() const { return l_; }
+  BarConstants const& constants() const { return constants_; }
+
+  Index elements() const { return n_; }
+  Index coordinates() const { return 7 * (n_ + 1); }
+  Index velocities() const { return 6 * (n_ + 1); }
+  Index first_column(Index e) const { return 6 * e; }
+  char const* coordinate_unit(Index i) const { return i % 7 < 3 ? "m" : "1"; }
+  char const* velocity_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
+
+  void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
+
+  template <StateScalar T>
+  void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
+    for (Index i = 0; i <= n_; ++i) {
+      for (int k = 0; k < 3; ++k)
+        out[std::size_t(7 * i + k)] = q[std::size_t(7 * i + k)] + delta[std::size_t(6 * i + k)];
+      set_entries<4>(out, 7 * i + 3, quaternion_plus<T>(axes_of<T>(q, i), entries<3>(delta, 6 * i + 3)));
+    }
+  }
+  /// Rate δ˙ for which q ⊞ δ(t) moves with the generalised velocities v: Ω = Jr(δ) δ˙ at each node.
+  template <StateScalar T>
+  void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
+    for (Index i = 0; i < velocities(); i += 6) {
+      set_entries<3>(out, i, entries<3>(v, i));
+      set_entries<3>(out, i + 3, product(right_jacobian_inverse<T>(entries<3>(delta, i + 3)), entries<3>(v, i + 3)));
+    }
+  }
+  template <class T = double>  // compiled only if used
+  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
+    for (Index i = 0; i <= n_; ++i) {
+      Vec<T, 3> const swept = cross<T>(omega, entries<3>(q, 7 * i));
+      for (int k = 0; k < 3; ++k) v[std::size_t(6 * i + k)] = v0[k] + swept[k];
+      set_entries<3>(v, 6 * i + 3, transposed_product<T>(rotation_matrix<T>(axes_of<double>(q, i)), omega));
+    }
+  }
+
+  template <class T>  // compiled only if used
+  void mass(Index, std::span<double const>, Mat<T, 12, 12>& m) const {
+    m.setZero();
+    for (int i = 0; i < 3; ++i) {
+      m(i, i) = m(6 + i, 6 + i) = 2.0 * sixth_;
+      m(i, 6 + i) = m(6 + i, i) = sixth_;
+      m(3 + i, 3 + i) = m(9 + i, 9 + i) = rotary_[i];
+    }
+  }
+  template <StateScalar T>
+  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
+    T const* const x = a.data() + 6 * e;
+    for (int i = 0; i < 3; ++i) {
+      out[i] = (2.0 * x[i] + x[6 + i]) * sixth_;
+      out[6 + i] = (x[i] + 2.0 * x[6 + i]) * sixth_;
+      out[3 + i] = x[3 + i] * rotary_[i];
+      out[9 + i] = x[9 + i] * rotary_[i];
+    }
+  }
+  template <StateScalar T>
+  void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
+    out = detail::zeros<Element<T>>();
+    for (int i = 0; i < 3; ++i) out[i] = out[6 + i] = T(3.0 * sixth_ * g[i]);
+  }
+
+  template <class T = double>  // compiled only if used
+  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
+    Vec<T, 3> const v1 = entries<3>(v, 6 * e), w1 = entries<3>(v, 6 * e + 3), v2 = entries<3>(v, 6 * e + 6),
+                    w2 = entries<3>(v, 6 * e + 9);
+    return sixth_ * (squared_norm(v1) + dot(v1, v2) + squared_norm(v2)) +
+           0.5 * (dot(momentum<T>(w1), w1) + dot(momentum<T>(w2), w2));
+  }
+  template <class T = double>  // compiled only if used
+  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
+    Vec<T, 3> const r1 = entries<3>(q, 7 * e), r2 = entries<3>(q, 7 * e + 7);
+    return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
+  }
+
+ protected:
+  /// Chain of n elements of the bar, with nodes on `curve` in the axes of the bar.
+  template <class Curve>  // compiled only if used
+  FrameChain(Bar const& bar, BarConstants const& c, Index n, Curve const& curve)
+      : constants_(c),
+        n_(n),
+        length_(bar.length),
+        l_(bar.length / double(n)),
+        sixth_(c.mass_per_length * l_ / 6.0),
+        rotary_(rotary_inertias(c)),
+        reference_(std::size_t(7 * (n + 1))) {
+    for (int i = 0; i < 3; ++i) rotary_[i] *= 0.5 * l_;
+    std::span<double> const q(reference_);
+    for (Index i = 0; i <= n; ++i) {
+      Placement const at = placed(bar, curve(double(i) * l_));
+      set_entries<3>(q, 7 * i, at.origin);
+      set_entries<4>(q, 7 * i + 3, quaternion_of(at.axes));
+    }
+  }
+
+  /// Placement in the world of a section with the placement `section` in the axes of the bar.
+  template <class T = double>  // compiled only if used
+  static Placement placed(Bar const& bar, Placement const& section) {
+    section.check("Se3Beam: the reference curve");
+    Placement out{product<T>(bar.placement.axes, section.origin), product<T>(bar.placement.axes, section.axes)};
+    for (int i = 0; i < 3; ++i) out.origin[i] += bar.placement.origin[i];
+    return out;
+  }
+  /// Unit quaternion of the section of node i.
+  template <StateScalar T>
+  static Quaternion<T> axes_of(std::span<T const> q, Index i) {
+    return entries<4>(q, 7 * i + 3);
+  }
+  std::span<double const> reference() const { return reference_; }  ///< coordinates of the undeformed beam
+
+  /// Moment −Ω × J Ω of the inertia forces on node i.
+  template <StateScalar T>
+  Vec<T, 3> gyroscopic_moment(Index i, std::span<T const> v) const {
+    Vec<T, 3> const omega = entries<3>(v, 6 * i + 3);
+    return cross<T>(momentum<T>(omega), omega);
+  }
+  /// Adds cd ∂(Ω × J Ω)/∂Ω = cd (Ω̃ J − (J Ω)~) of both nodes of element e to k.
+  template <class T>
+  void add_gyroscopic_tangent(Index e, std::span<double const> v, double cd, Mat<T, 12, 12>& k) const {
+    for (int i = 0; i < 2; ++i) {
+      Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
+      Mat<T, 3, 3> const of_omega = skew<T>(omega), of_momentum = skew<T>(momentum<T>(omega));
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          k(6 * i + 3 + r, 6 * i + 3 + c) += cd * (of_omega(r, c) * rotary_[c] - of_momentum(r, c));
+    }
+  }
+
+ private:
+  /// Angular momentum J Ω.
+  template <class T>
+  Vec<T, 3> momentum(Vec<T, 3> const& omega) const {
+    return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
+  }
+
+  BarConstants constants_;
+  Index n_;
+  double length_, l_;
+  double sixth_;  ///< Aρ l/6 [kg]
+  Vec3 rotary_;   ///< J of half an element at a node [kg m²]
+  std::vector<double> reference_;
+};
+
+}  // namespace polybody
