@@ -7,7 +7,9 @@ using namespace polybody;
 int main() {
   using Clamp = Joint<planar::Weld, Constraint>;
   using Strip = planar::AncfCable<>;
-  Bar const bar{.length = 0.5, .section = Rectangle{.height = 1e-3, .width = 0.02}, .material = Material{.density = 7800, .young = 2e11}};
+  Bar const bar{.length = 0.5,
+                .section = Rectangle{.height = 1e-3, .width = 0.02},
+                .material = Material{.density = 7800, .young = 2e11}};
   Model<Bodies<Strip>, Joints<Clamp>, Forces<PointForce<>>> model;
   auto const strip = model.add(Strip::from(bar, 12), "strip");
   model.connect(Clamp{}, model.ground().at({0, 0, 0}), strip.at(0.0), "clamp");

@@ -1,4 +1,5 @@
-// Dzhanibekov's nut: a free body that spins about its middle axis turns over. The period follows from an elliptic integral.
+// Dzhanibekov's nut: a free body that spins about its middle axis turns over. The period follows from an elliptic
+// integral.
 #include "mechanism.hpp"
 using namespace polybody;
 
@@ -11,13 +12,15 @@ int main() {
   double const spin = 6.0, off = 1e-3;
   model.set_velocity(x, nut, {0, 0, 0}, {off, spin, 0});
 
-  Figure figure{.title = "Angular velocity about the middle axis", .x_label = "t [s]", .y_label = "[rad/s]", .legend = false};
+  Figure figure{
+      .title = "Angular velocity about the middle axis", .x_label = "t [s]", .y_label = "[rad/s]", .legend = false};
   figure.curves.push_back({});
   double before = spin, t = 0.0, first = 0.0, second = 0.0;
   for (auto const& now : simulate(model, x, Radau{}, {.end_time = 16.0, .step = 0.01})) {
     Frame<double> const f = now.frame(nut.centre());
     double const middle = f.A.col(1).dot(f.w);
-    if (before * middle < 0.0) (first == 0.0 ? first : second) = t + (now.t - t) * before / (before - middle);
+    if (before * middle < 0.0 && second == 0.0)
+      (first == 0.0 ? first : second) = t + (now.t - t) * before / (before - middle);
     figure.curves[0].x.push_back(now.t), figure.curves[0].y.push_back(middle);
     before = middle;
     t = now.t;

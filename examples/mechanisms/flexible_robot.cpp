@@ -14,7 +14,10 @@ int main() {
     w.m[2] = (wanted - angle) * 40.0 - frames[0].w[2] * 8.0;
     return std::array{w};
   });
-  Bar const bar{.length = 1.0, .section = Rectangle{.height = 4e-3, .width = 0.03}, .material = Material{.density = 2700, .young = 7e10}, .damping = Damping{.bending = 2e-3}};
+  Bar const bar{.length = 1.0,
+                .section = Rectangle{.height = 4e-3, .width = 0.03},
+                .material = Material{.density = 2700, .young = 7e10},
+                .damping = Damping{.bending = 2e-3}};
   Model<Bodies<Arm, planar::Rigid>, Joints<Pin, Clamp>, Forces<std::decay_t<decltype(controller)>>> model;
   auto const hub = model.add(planar::Rigid(1.0, 0.05), "hub");
   auto const arm = model.add(Arm::from(bar, {.elements = 16}), "arm");

@@ -22,7 +22,8 @@ class Picture {
  public:
   Picture(std::string title, int u, int v) : u_(u), v_(v) {
     char const* const names[] = {"x [m]", "y [m]", "z [m]"};
-    figure_ = {.title = std::move(title), .x_label = names[u], .y_label = names[v], .equal_axes = true, .legend = false};
+    figure_ = {
+        .title = std::move(title), .x_label = names[u], .y_label = names[v], .equal_axes = true, .legend = false};
     figure_.width_px = 700;
     figure_.height_px = 500;
   }

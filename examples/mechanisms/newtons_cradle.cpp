@@ -11,9 +11,12 @@ int main() {
   for (int i = 0; i < 5; ++i) {
     double const at = i * (2.0 * radius + gap);
     balls.push_back(model.add(planar::Rigid(0.26, 4e-5, Placement::planar(at, 0)), "ball " + std::to_string(i)));
-    model.connect(Thread{}, model.ground().at({at, length, 0}), balls[std::size_t(i)].at(Vec2(0, length)), "thread " + std::to_string(i));
+    model.connect(Thread{}, model.ground().at({at, length, 0}), balls[std::size_t(i)].at(Vec2(0, length)),
+                  "thread " + std::to_string(i));
     Touch const touch{{.radius_a = radius, .radius_b = radius}, {.modulus = 1.1e11, .radius = 0.5 * radius}};
-    if (i > 0) model.apply(touch, balls[std::size_t(i - 1)].centre(), balls[std::size_t(i)].centre(), "contact " + std::to_string(i));
+    if (i > 0)
+      model.apply(touch, balls[std::size_t(i - 1)].centre(), balls[std::size_t(i)].centre(),
+                  "contact " + std::to_string(i));
   }
   State x = model.reference_state();
   double const speed = 0.5;  // at the lowest point
@@ -21,7 +24,8 @@ int main() {
   mechanism::Picture picture("Newton's cradle: centres of the balls", 0, 1);
   double most = 0.0;
   int step = 0;
-  for (auto const& now : simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.05, .step = 1e-6, .max_step = 1e-5})) {
+  for (auto const& now :
+       simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.05, .step = 1e-6, .max_step = 1e-5})) {
     most = std::max(most, now.position(balls[4].centre())[0] > 0.162 ? now.frame(balls[4].centre()).v.norm() : 0.0);
     if (step++ % 2000 != 0) continue;
     for (auto const& ball : balls) picture.line({now.position(ball.centre())}, 0);

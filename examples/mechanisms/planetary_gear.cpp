@@ -15,7 +15,8 @@ int main() {
   model.connect(Pin{}, ground, sun.centre(), "bearing of the sun");
   auto const shaft = model.connect(Pin{}, ground, carrier.centre(), "bearing of the carrier");
   model.connect(Pin{}, carrier.at(Vec2(arm, 0)), planet.centre(), "bearing of the planet");
-  model.connect(Mesh{{.teeth_a = 20, .teeth_b = 15, .centres = {1, 0, 0}}}, sun.centre(), planet.centre(), "sun, planet");
+  model.connect(Mesh{{.teeth_a = 20, .teeth_b = 15, .centres = {1, 0, 0}}}, sun.centre(), planet.centre(),
+                "sun, planet");
   model.connect(Mesh{{.teeth_a = -50, .teeth_b = 15, .centres = {1, 0, 0}}}, ground, planet.centre(), "ring, planet");
   model.connect(Motor{{.law = {{.value = 7.0}}}}, ground, sun.centre(), "motor");
 

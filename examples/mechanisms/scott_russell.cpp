@@ -8,12 +8,15 @@ int main() {
   double const a = 0.6, angle = 35.0 * std::acos(-1.0) / 180.0, c = std::cos(angle), s = std::sin(angle);
   Model<Bodies<planar::Rigid>, Joints<Pin, Rail>, Forces<PointForce<>>> model{Gravity{0, -9.81, 0}};
   auto const ground = model.ground();
-  auto const longer = model.add(planar::Rigid(8.0, 8.0 * 1.44 / 12.0, Placement::planar(a * c, a * s, -angle)), "long bar");
-  auto const shorter = model.add(planar::Rigid(4.0, 4.0 * 0.36 / 12.0, Placement::planar(0.5 * a * c, 0.5 * a * s, angle)), "short bar");
+  auto const longer =
+      model.add(planar::Rigid(8.0, 8.0 * 1.44 / 12.0, Placement::planar(a * c, a * s, -angle)), "long bar");
+  auto const shorter =
+      model.add(planar::Rigid(4.0, 4.0 * 0.36 / 12.0, Placement::planar(0.5 * a * c, 0.5 * a * s, angle)), "short bar");
   model.connect(Pin{}, ground.at({0, 0, 0}), shorter.at(Vec2(-0.5 * a, 0)), "ground pin");
   model.connect(Pin{}, shorter.at(Vec2(0.5 * a, 0)), longer.centre(), "middle pin");
   model.connect(Rail{{.normal = {0, 1, 0}}}, ground.at({0, 0, 0}), longer.at(Vec2(a, 0)), "rail of the foot");
-  auto const hold = model.connect(Rail{{.normal = {1, 0, 0}}}, ground.at({2.0 * a * c, 0, 0}), longer.at(Vec2(a, 0)), "hold");
+  auto const hold =
+      model.connect(Rail{{.normal = {1, 0, 0}}}, ground.at({2.0 * a * c, 0, 0}), longer.at(Vec2(a, 0)), "hold");
   model.apply(PointForce<>{.force = {0, -120.0 * 9.81, 0}}, longer.at(Vec2(-a, 0)), "load");
 
   State x = model.reference_state();
