@@ -1,5 +1,6 @@
 #pragma once
 // Common parts of the small mechanisms: the check of a known number, and a picture of the moving parts.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,15 +28,30 @@ class Picture {
     figure_.width_px = 700;
     figure_.height_px = 500;
   }
-  // Adds a line through points at the time t [s]. A positive t is written at its last point.
+  // Adds a line through points at the time t [s]. A time that is not negative is written at the second of a few points,
+  // or at the last of many.
   void line(std::vector<polybody::Vec3> const& points, int colour, double t = -1.0) {
-    polybody::Curve c{.style = points.size() > 1 ? "lines" : "points", .colour = colour};
+    polybody::Curve c{.style = points.size() > 1 ? "lines" : "points", .colour = colour, .width = 2.5};
     for (polybody::Vec3 const& p : points) c.x.push_back(p[u_]), c.y.push_back(p[v_]);
-    if (t >= 0.0) figure_.texts.push_back({c.x.back(), c.y.back(), polybody::number(t, 3) + " s"});
+    std::size_t const at = points.size() > 5 ? points.size() - 1 : std::min<std::size_t>(1, points.size() - 1);
+    if (t >= 0.0) figure_.texts.push_back({c.x[at], c.y[at], polybody::number(t, 2) + " s"});
     figure_.curves.push_back(std::move(c));
   }
-  // Writes out/mechanisms/NAME.png, with its data and script.
-  void write(std::string const& name) const {
+  // Writes out/mechanisms/NAME.png, with its data and script. A flat picture gets a height of a third of its width.
+  void write(std::string const& name) {
+    double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
+    for (polybody::Curve const& c : figure_.curves)
+      for (std::size_t i = 0; i < c.x.size(); ++i) {
+        low[0] = std::min(low[0], c.x[i]), high[0] = std::max(high[0], c.x[i]);
+        low[1] = std::min(low[1], c.y[i]), high[1] = std::max(high[1], c.y[i]);
+      }
+    double const size = std::max(high[0] - low[0], high[1] - low[1]), least = 0.35 * size, margin = 0.06 * size;
+    for (int k = 0; k < 2; ++k) {
+      double const missing = std::max(0.0, least - (high[k] - low[k]));
+      low[k] -= margin + 0.5 * missing, high[k] += margin + 0.5 * missing;
+    }
+    figure_.x_range = {low[0], high[0]};
+    figure_.y_range = {low[1], high[1]};
     std::filesystem::create_directories("out/mechanisms");
     write_figure(figure_, "out/mechanisms/" + name);
   }

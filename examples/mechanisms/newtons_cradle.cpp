@@ -21,16 +21,19 @@ int main() {
   State x = model.reference_state();
   double const speed = 0.5;  // at the lowest point
   model.set_velocity(x, balls[0], {speed, 0, 0}, {0, 0, speed / length});
-  mechanism::Picture picture("Newton's cradle: centres of the balls", 0, 1);
+  Figure figure{.title = "Speeds of the five balls", .x_label = "t [s]", .y_label = "[m/s]", .legend = false};
+  for (int i = 0; i < 5; ++i) figure.curves.push_back({.width = 2.5});
   double most = 0.0;
   int step = 0;
   for (auto const& now :
        simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.05, .step = 1e-6, .max_step = 1e-5})) {
     most = std::max(most, now.position(balls[4].centre())[0] > 0.162 ? now.frame(balls[4].centre()).v.norm() : 0.0);
-    if (step++ % 2000 != 0) continue;
-    for (auto const& ball : balls) picture.line({now.position(ball.centre())}, 0);
+    if (step++ % 20 != 0) continue;
+    for (std::size_t i = 0; i < 5; ++i)
+      figure.curves[i].x.push_back(now.t), figure.curves[i].y.push_back(now.frame(balls[i].centre()).v[0]);
   }
-  picture.write("newtons_cradle");
+  std::filesystem::create_directories("out/mechanisms");
+  write_figure(figure, "out/mechanisms/newtons_cradle");
   // The gaps separate the impacts, and each impact of two equal balls exchanges their speeds.
   return mechanism::compare("speed of the last ball [m/s]", most, speed, 2e-3);
 }
