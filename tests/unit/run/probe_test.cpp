@@ -43,7 +43,7 @@ template <class M>
 System new_system(M const& model, State const& x) {
   System system(model, with<Capabilities::rigid_velocities>);
   system.evaluate(x.q, x.v, x.t);
-  system.push_forces();
+  system.push_forces(x.lambda);
   return system;
 }
 
