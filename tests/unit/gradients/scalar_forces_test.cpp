@@ -40,8 +40,8 @@ struct Winder {
     Pin<Policy> const pin{Revolute{.axis = Vec3(0, 1, 0)}};
     shoulder = model.connect(pin, model.ground().at({0, 0, 0}), first.at(Vec3(-0.5, 0, 0)), "shoulder");
     elbow = model.connect(pin, first.at(Vec3(0.5, 0, 0)), second.at(Vec3(-0.5, 0, 0)), "elbow");
-    spring = model.apply(TorsionalSpringDamper{{.stiffness = stiffness, .damping = 0.2, .free = 8.0}}, shoulder,
-                         "spring");
+    spring =
+        model.apply(TorsionalSpringDamper{{.stiffness = stiffness, .damping = 0.2, .free = 8.0}}, shoulder, "spring");
     model.apply(JointLimit{stop}, elbow, "stop");
     start = model.reference_state();
     model.set_velocity(start, first, Vec3::Zero(), Vec3(0, speed, 0));

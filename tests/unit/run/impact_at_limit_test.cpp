@@ -88,8 +88,7 @@ struct Pendulum {
   using Pin = Joint<planar::Revolute, Policy>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -g, 0}};
   BodyHandle<planar::Rigid> rod = model.add(
-      planar::Rigid::from(
-          {.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}),
+      planar::Rigid::from({.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}),
       "rod");
   ElementHandle<Pin> pin = model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
 };
@@ -99,8 +98,7 @@ template <class Policy>
 void keeps_its_restitution() {
   Pendulum<Policy> p;
   State x = p.model.reference_state();
-  Event const stop =
-      impact_at_limit(p.model, p.pin, {.lower = -0.5 * std::numbers::pi, .restitution = 0.8});
+  Event const stop = impact_at_limit(p.model, p.pin, {.lower = -0.5 * std::numbers::pi, .restitution = 0.8});
   std::vector<double> tops;
   double before = 0.0, last = 0.0;
   auto run = simulate(p.model, x, GeneralisedAlpha{.rho_inf = 1.0}, {.end_time = 4.5, .step = 5e-4, .events = {stop}});
@@ -118,8 +116,8 @@ TEST(ImpactAtLimit, KeepsItsRestitution) {
   keeps_its_restitution<JointCoordinates>();
 }
 
-// A block falls 1 m along a vertical guide to its limit: the impacts accumulate at √(2 h/g) (1 + e)/(1 − e), 1.355 s for
-// e = 0.5. The block then rests.
+// A block falls 1 m along a vertical guide to its limit: the impacts accumulate at √(2 h/g) (1 + e)/(1 − e), 1.355 s
+// for e = 0.5. The block then rests.
 TEST(ImpactAtLimit, ComesToRestOnASlide) {
   using Slide = Joint<planar::Prismatic, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Slide>> model{Gravity{0, -g, 0}};
