@@ -87,7 +87,8 @@ template <class B>
 void tip_moment(Options const& o) {
   Cantilever<B> beam(bar(low, o.density), o.elements, o.moment);
   State x = beam.model.reference_state();
-  Figure shapes{.title = "Figure 2.9: 30 kN m at the tip of the clamped beam, t = 0, 1, 2, 3, 4, 20 s",
+  Figure shapes{.title = "Figure 2.9: 30 kN m at the tip of the clamped beam\n" + stiffness_text(low) + ", " +
+                         std::to_string(o.elements) + " elements",
                 .x_label = "x [m]",
                 .y_label = "y [m]",
                 .equal_axes = true};

@@ -30,8 +30,8 @@ Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> 
   return c;
 }
 
-// Adds both meshes of an Lrvf as two curves, or the centre line of another body as one curve. Only the first snapshot
-// has labels.
+// Adds both meshes of an Lrvf as two curves, or the centre line of another body as one curve, with its nodes and the
+// time at the tip. Only the first snapshot has labels.
 template <class M, class B>
 void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> const& handle, double bar_length) {
   bool const first = figure.curves.empty();
@@ -49,6 +49,12 @@ void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> 
     position.label = first ? "centre line" : "";
     figure.curves.push_back(position);
   }
+  Curve nodes = shape_of(model, x, handle, bar_length, int(handle.body().elements()));
+  nodes.label = first ? "nodes" : "";
+  nodes.style = "points";
+  nodes.colour = 0;
+  figure.curves.push_back(nodes);
+  figure.texts.push_back({nodes.x.back(), nodes.y.back(), number(x.t, 3) + " s"});
 }
 
 // Sets the ranges and the size of a figure of shapes, so that flat shapes remain readable on equal axes.
@@ -80,6 +86,11 @@ inline void write_table(std::filesystem::path const& file, std::vector<std::stri
     csv.row(std::span<double const>(row));
   }
   csv.close();
+}
+
+// Stiffnesses of a section as text, for the title of a figure.
+inline std::string stiffness_text(Stiffness const& s) {
+  return "EA = " + number(s.EA, 3) + " N, GA = " + number(s.GA, 3) + " N, EI = " + number(s.EI, 3) + " N m²";
 }
 
 inline void draw(Figure const& figure, std::filesystem::path const& stem, bool plot) {

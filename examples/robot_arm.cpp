@@ -104,7 +104,10 @@ void run_case(Options const& o, Case const& c) {
   State x = arm.model.reference_state();
   double const end_time = o.end_time > 0.0 ? o.end_time : c.ramp;
   Figure snapshots{
-      .title = c.title + ", one shape per second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
+      .title = c.title + '\n' + stiffness_text(c.stiffness) + ", " + std::to_string(o.elements) + " elements",
+      .x_label = "x [m]",
+      .y_label = "y [m]",
+      .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
   bool constexpr two_meshes = std::is_same_v<B, planar::Lrvf>;
   if (two_meshes)

@@ -11,7 +11,7 @@ Headers
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
   - are ordered by the links in the pages of docs/site: \\subpage;
-  - of docs/theory have formulas $…$ and $$…$$, which KaTeX draws.
+  - of docs/theory and docs/items have formulas $…$ and $$…$$, which KaTeX draws.
 Lines keep their numbers, so that a warning names the right one.
 
 """
@@ -141,7 +141,7 @@ def header(name, text):
 # --- pages ------------------------------------------------------------------------------------
 def label(path):
     """docs/guide/contact.md -> guide_contact, docs/joints.md -> page_joints"""
-    return f"{path.parent.name if path.parent.name in ('guide', 'theory', 'site', 'validated') else 'page'}_{path.stem}"
+    return f"{path.parent.name if path.parent.name in ('guide', 'items', 'lessons', 'theory', 'site', 'validated') else 'page'}_{path.stem}"
 
 
 def anchor(heading):
@@ -157,7 +157,7 @@ def formula(tag, tex):
 
 def page(path, text):
     own, in_code, in_formula = label(path), False, False
-    has_formulas = path.parent.name == "theory"
+    has_formulas = path.parent.name in ("theory", "items")
     if has_formulas:
         text = DISPLAY.sub(lambda m: formula("div", m[1]), text)
     out = []
@@ -171,12 +171,14 @@ def page(path, text):
                 name = own if heading[1] == "#" else f"{own}_{anchor(heading[2])}"
                 line = f"{line} {{#{name}}}" if own != "site_index" or heading[1] != "#" else line
             line = "".join(part if i % 2 else LINK.sub(lambda m: link(path, m), part) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
+            line = IMAGE.sub(r"![\1](\2)", line)  # Doxygen looks for the file in IMAGE_PATH
             if has_formulas:
                 line = FORMULA.sub(lambda m: formula("span", m[1]), line)
         out.append(line)
     return "\n".join(out) + (DRAW if has_formulas else "")
 
 
+IMAGE = re.compile(r"!\[([^\]]*)\]\((?:[^)\s]*/)?([^)\s/]+)\)")
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
 
 

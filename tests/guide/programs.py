@@ -1,7 +1,8 @@
-"""The programs of the pages in docs/guide, and their output.
+"""The programs of the pages in docs/guide, docs/items and docs/lessons, and their output.
 
-  programs.py names PAGE...            their names, one per line. A program is the block after <!-- program: NAME -->; blocks
-                                       after <!-- more: NAME --> continue it. A block has at most 60 lines
+  programs.py names PAGE...            folder/page:name of each, one per line. A program is the block after
+                                       <!-- program: NAME -->; blocks after <!-- more: NAME --> continue it. A block has at most
+                                       60 lines, in docs/items 25
   programs.py write PAGE NAME FILE     writes one of them
   programs.py check PAGE NAME PROGRAM  runs it and compares its output with the block after <!-- output: NAME -->: words
                                        exactly, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
@@ -15,17 +16,18 @@ import subprocess
 import sys
 from pathlib import Path
 
-MAX_LINES = 60
+MAX_LINES = {"guide": 60, "items": 25, "lessons": 60}  # of a block, by folder
 BLOCK = re.compile(r"<!-- (program|more|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def blocks(page):
     text = Path(page).read_text(encoding="utf-8")
+    most = MAX_LINES[Path(page).parent.name]
     found, continued = {"program": {}, "output": {}}, 0
     for kind, name, content in BLOCK.findall(text):
-        if kind != "output" and content.count("\n") > MAX_LINES:
-            sys.exit(f"{page}: a block of {name} has {content.count(chr(10))} lines, above {MAX_LINES}.")
+        if kind != "output" and content.count("\n") > most:
+            sys.exit(f"{page}: a block of {name} has {content.count(chr(10))} lines, above {most}.")
         if kind == "more":
             if name not in found["program"]:
                 sys.exit(f"{page}: nothing comes before what continues {name}.")
@@ -97,7 +99,7 @@ def main(command, *arguments):
     if command == "names":
         for page in arguments:
             for name in blocks(page)["program"]:
-                print(f"{Path(page).stem}:{name}")
+                print(f"{Path(page).parent.name}/{Path(page).stem}:{name}")
     elif command == "write":
         page, name, file = arguments
         Path(file).write_text(blocks(page)["program"][name], encoding="utf-8")

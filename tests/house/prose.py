@@ -20,7 +20,7 @@ NEVER = re.compile(r"README\.md|docs/(guide/.*|using|overview|glossary|migration
 DIARY_ALLOWED = re.compile(r"docs/notes/|CHANGELOG\.md|LICENSE")
 SKIPPED = re.compile(r"docs/(validated|notes)/.*\.md|cmake/viewer/")
 
-LONGEST = {"docs/performance.md": 1200, "docs/reliability.md": 900, "docs/track_stress.md": 2000}  # words of a page
+LONGEST = {"docs/performance.md": 1200, "docs/reliability.md": 900, "docs/track_stress.md": 2000, "docs/tracked_vehicle.md": 1500}  # words of a page
 
 PRONOUN = r"(?:it|they|that|this|these|those|there|one|none|no|nothing|both|some|each|every|an?|the|its|their)"
 VERB = r"(?:is|are|was|were|has|have|does|do|may|must|can|cannot|goes?|comes?|takes?|gets?|stays?|leaves?|begins?|lies)"

@@ -9,6 +9,7 @@
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf),
 /// with the generalised forces r of the joint. A root has no parent, and u are its own generalised velocities. The
 /// remaining constraint equations, with Jacobian G, are solved with their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
+/// Theory: Eqs. 5.25 to 5.28.
 
 #include <polybody/elimination/reduction.hpp>
 #include <polybody/math/sequence.hpp>

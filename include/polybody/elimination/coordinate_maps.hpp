@@ -3,6 +3,7 @@
 /// Maps between reduced velocities u and full velocities v = T u, for models with policies that eliminate unknowns. T
 /// is the matrix of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Steps use doubles;
 /// derivatives of steps use the same maps with dual numbers or with a tape.
+/// Theory: Eq. 5.10.
 
 #include <polybody/elimination/reduction.hpp>
 #include <polybody/system/coordinates.hpp>

@@ -2,6 +2,7 @@
 /// \file
 /// End of a joint of a `JointTree` on a body with a floating frame. The end moves with the deformation of the body, so
 /// the motion of the carried body depends on deformation rates in addition to the joint's velocities.
+/// Theory: Eq. 5.21.
 
 #include <numbers>
 

@@ -9,6 +9,7 @@
 /// remain unknowns. An end of a joint on such a body moves with q, which adds S_D q̇ to S u (`FloatingEnd`). Full
 /// vectors contain all bodies; reduced vectors contain the joint coordinates and deformations. Each function loops over
 /// the bodies, from the roots to the tips or back.
+/// Theory: Eqs. 5.17 to 5.20.
 
 #include <utility>
 

@@ -7,6 +7,7 @@
 /// m_kj:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 /// The index dk denotes the dependent coordinate of row k.
+/// Theory: Eqs. 5.14 to 5.16.
 
 #include <polybody/math/errors.hpp>
 #include <polybody/math/index_map.hpp>

@@ -8,6 +8,7 @@
 /// velocities of all bodies, except velocities that linear joints make dependent, and the multipliers of all constraint
 /// equations except those of linear joints. Matrix entries of dependent coordinates are distributed among the
 /// independent coordinates.
+/// Theory: Eqs. 5.11, 5.12.
 
 #include <array>
 

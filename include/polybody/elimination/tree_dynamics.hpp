@@ -11,6 +11,7 @@
 ///   D = Sᵀ I S,  w = −Sᵀ p,   I ← I − (I S) D⁻¹ (I S)ᵀ,  p ← p + (I S) D⁻¹ w,
 /// then for the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x). In world axes the
 /// articulated inertias need no rotation from body to body.
+/// Theory: Eqs. 5.22 to 5.24.
 
 #include <polybody/elimination/tree_recursion.hpp>
 

@@ -19,6 +19,7 @@
 ///   A₀ = A − r D⁻¹ JᵀA,   B₀ = B′ − r D⁻¹ JᵀB′.
 /// The three columns of a ball joint are eliminated together. If the columns are fixed on the carrier, v and a replace
 /// v₀ and a₀, v₀ replaces v, s_a has the additional term (J u) ×ₘ s_v, and D = Jᵀ r.
+/// Theory: Eqs. 5.29 to 5.32.
 
 #include <polybody/elimination/articulated_inertia.hpp>
 #include <polybody/elimination/tree_recursion.hpp>

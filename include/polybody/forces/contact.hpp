@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact between two markers: a geometry that computes the penetration, a normal force law and friction.
+/// Theory: Eqs. 8.1 to 8.3, 8.10 to 8.13.
 
 #include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>

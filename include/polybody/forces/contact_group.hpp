@@ -19,6 +19,7 @@ namespace polybody {
 /// only if its `may_touch(first, second)` returns true for the frames of both markers. This test should cost little
 /// more than the computation of a distance. If all laws have `reach(second)` (`HasReach`) and the group has at most 64
 /// partners, several markers are tested at once with SIMD operations.
+/// Theory: Eqs. 8.3, 8.12 to 8.14.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {

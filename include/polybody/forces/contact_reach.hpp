@@ -2,6 +2,7 @@
 /// \file
 /// Region in which a contact can act on a marker. The test of a region is the same for all contacts and vectorises over
 /// many markers.
+/// Theory: Eq. 8.14.
 
 #include <concepts>
 

@@ -2,6 +2,7 @@
 /// \file
 /// Concept of a force element: wrenches on its markers as a function of their frames. Dual numbers provide the
 /// tangent of the wrenches.
+/// Theory: Eqs. 3.1 to 3.3.
 
 #include <array>
 

@@ -4,6 +4,7 @@
 namespace polybody {
 
 /// Uniform gravitational field of a model. Every body computes its weight from this field.
+/// Theory: Eq. 3.4.
 struct Gravity {
   Vec3 g = Vec3::Zero();  ///< (3) acceleration of gravity, world axes [m/s²]
 

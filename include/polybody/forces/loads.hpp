@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Forces and moments on a marker, as dead loads and follower loads, and forces that are distributed along a bar.
+/// Theory: Eqs. 3.6, 3.7.
 
 #include <vector>
 

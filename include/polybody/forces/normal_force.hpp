@@ -2,6 +2,7 @@
 /// \file
 /// Normal force laws of contact, as functions of the penetration d > 0 and its rate ḋ. The force is never negative:
 /// bodies do not adhere.
+/// Theory: Eqs. 8.4 to 8.9.
 
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>

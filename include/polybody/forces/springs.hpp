@@ -2,6 +2,7 @@
 /// \file
 /// Springs and dampers between two markers: along the line between them, along the axes of a marker, and Maxwell
 /// elements.
+/// Theory: Eqs. 3.8 to 3.12.
 
 #include <polybody/forces/force_element.hpp>
 #include <polybody/forces/force_states.hpp>

@@ -16,6 +16,7 @@
 /// adds −(∂J/∂h)/ġ times the adjoint variables and the parameter derivatives of g to those of J. This is the transposed
 /// saltation relation of the discrete run. The adjoint of a restart is computed by differences of the map from the
 /// state before the restart to the state after it.
+/// Theory: Eqs. 8.27 to 8.29.
 
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>

@@ -10,6 +10,7 @@
 /// the derivative of ⊞ and ∂(Gᵀλ)/∂q. The equations are solved by iterative refinement with an approximate
 /// factorisation (`StepFactorisations`). The iteration ends if the last correction, or an estimate of the next one
 /// (`CorrectionErrorEstimate`), is at the level of round-off.
+/// Theory: Eqs. 8.18, 8.19.
 
 #include <array>
 #include <cmath>

@@ -11,6 +11,7 @@
 /// Products with transposed derivatives are computed from one tape of the residual, so that they contain all terms. The
 /// equations for μ are solved with a factorisation of the transposed tangent at the end of the step and corrected down
 /// to round-off.
+/// Theory: Eqs. 8.24, 8.25.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/step_factorisations.hpp>

@@ -6,6 +6,7 @@
 /// rate and position are zero or the coefficients of Baumgarte's feedback. For a projection, force = bias = 0. With
 /// position = 1/h², the projection changes the coordinates by δ = h² a; with rate = 1/h, it changes the velocities by h
 /// a. The unknowns a of a projection thus have the size of accelerations and do not lose digits when f is subtracted.
+/// Theory: Eq. 8.21.
 
 #include <polybody/gradients/alpha_linearised_step.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Run with forward sensitivities, integrated step by step.
+/// Theory: Eqs. 8.27, 8.28.
 
 #include <polybody/gradients/perturbed_models.hpp>
 #include <polybody/gradients/recorded_run.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Options and result of `gradient`, and the backward sweep with snapshots of states (`reverse_steps`).
+/// Theory: Eq. 8.26.
 
 #include <algorithm>
 #include <cstddef>

@@ -9,6 +9,7 @@
 /// For nonholonomic constraints, the second form contains G + G W instead of G. The size of W is hω/2, with the step h
 /// and the angular velocity ω. Newton's method omits W. A correction of derivatives with the factorisation of Newton's
 /// method therefore has a relative error of this size.
+/// Theory: Eq. 8.20.
 
 #include <algorithm>
 #include <vector>

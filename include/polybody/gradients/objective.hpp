@@ -6,6 +6,7 @@
 ///
 /// A function of a state of any scalar type (`auto const& x`) is differentiated with a tape. A function of a
 /// `State const&` is differentiated by differences, with four evaluations for each entry of q, v, v̇ and λ.
+/// Theory: Eq. 8.23.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Parameters of a model with respect to which a run is differentiated, and difference formulas for them.
+/// Theory: Eq. 8.17.
 
 #include <array>
 #include <cmath>

@@ -16,6 +16,7 @@
 /// v̇ solves linear equations point by point (gradients/recorded_points.hpp). A factorisation of the transposed matrix
 /// of all stages approximates μ. Products from sweeps over the tape of the stages correct μ until the corrections are
 /// at round-off.
+/// Theory: Eq. 8.22.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/radau_stage_solution.hpp>

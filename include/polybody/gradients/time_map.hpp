@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Map between the times of runs with breakpoints that depend on a parameter.
+/// Theory: Eq. 8.27.
 
 #include <algorithm>
 #include <array>

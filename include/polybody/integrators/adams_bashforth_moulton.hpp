@@ -2,6 +2,7 @@
 /// \file
 /// Adams predictor–corrector method of variable order and step: `AdamsBashforthMoulton`, with the past points that it
 /// stores in a state: `AdamsHistory`.
+/// Theory: Eqs. 6.28 to 6.30.
 
 #include <array>
 

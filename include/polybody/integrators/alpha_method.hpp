@@ -10,7 +10,7 @@
 /// Nonholonomic equations, G v + Φ_t = 0 at the end of the step, are divided by γh, so that their rows of the tangent
 /// are also rows of G. First-order states use the formulas of a and v, which are the formulas of the family for ż =
 /// h(z, t) [Jansen, Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ
-/// only in the four coefficients.
+/// only in the four coefficients. Theory: Eqs. 6.1 to 6.3, 6.6 to 6.10.
 ///
 /// A stabilised step also satisfies the derivatives of the constraint equations, Φ̇(q₁, v₁) = 0, by a second set of
 /// multipliers μ [Gear, Gupta & Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:

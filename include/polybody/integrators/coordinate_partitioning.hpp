@@ -19,6 +19,7 @@ namespace polybody {
 /// With at most `dense_up_to` velocities, each evaluation eliminates a dense G. In larger systems, the factorisation of
 /// a sparse G_d is reused, and the equations of positions and velocities are solved by corrections. If a correction
 /// leaves more than a quarter of the violation, G_d is factorised again and the partition is checked.
+/// Theory: Eq. 6.26.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
   double tolerance = 1e-12;     ///< tolerance of Φ [m], [rad], and for sparse G also of Φ̇, in addition to round-off

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Energy-conserving and energy-decaying integrators, `EnergyMomentum` and `EnergyDecaying`, with their common step.
+/// Theory: Eqs. 6.17, 6.19 to 6.21.
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Error norm of integrators with variable step.
+/// Theory: Eqs. 6.31, 6.32.
 
 #include <algorithm>
 #include <array>

@@ -7,6 +7,7 @@
 ///   q₁ = q₀ ⊞ θ,   Π₁ = exp(−θ̃) Π₀,   θ = ½h J⁻¹(Π₀ + Π₁),   Π = J Ω in body axes [Simo & Wong 1991].
 /// |Π|, the angular momentum in world axes and the energy ½ ΩᵀJΩ are conserved, because (Π₁ − Π₀)·θ = 0. A rotation
 /// about a principal axis is exact. The step is of order two and reversible in time.
+/// Theory: Eq. 6.38.
 
 #include <cmath>
 #include <limits>

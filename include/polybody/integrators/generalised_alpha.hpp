@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Integrators of the generalised-α family: generalised-α, HHT-α, Newmark and the trapezoidal rule.
+/// Theory: Eqs. 6.4, 6.5.
 
 #include <polybody/integrators/alpha_method.hpp>
 

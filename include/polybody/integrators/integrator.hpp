@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Concept of an integrator, the report and the checks of a step, and the next state of an explicit method.
+/// Theory: Eq. 6.37.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/system/plausibility_check.hpp>

@@ -10,6 +10,7 @@ namespace polybody {
 /// ignored [Wehage & Haug 1982; Shabana 2020]. A partition is kept while no entry of R exceeds a limit: |R_di| is the
 /// factor by which |det G_d| would grow if columns i and d were exchanged. G is dense; an elimination costs m² n
 /// operations. The class is also the block sink that collects G from a tangent [M, Gᵀ; G, 0].
+/// Theory: Eq. 6.26.
 class PartitionedConstraints {
  public:
   static constexpr int sides = 2;  ///< number of right-hand sides

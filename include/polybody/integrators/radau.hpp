@@ -7,6 +7,7 @@
 /// The third stage is the end of the step. The stages satisfy the second derivatives of the constraint equations, so
 /// that multipliers have the order of the velocities. `Projection` removes the drift. The Newton unknowns are v̇_i and
 /// λ_i of all stages together. The increments δ_i follow from v̇_i. First-order states are part of v_i.
+/// Theory: Eqs. 6.13 to 6.16.
 
 #include <array>
 #include <utility>

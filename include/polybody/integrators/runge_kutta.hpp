@@ -2,6 +2,7 @@
 /// \file
 /// Explicit Runge–Kutta methods on the manifold. With q = q₀ ⊞ δ, the pair (δ, v) is in a vector space, and δ˙ =
 /// local_rate(δ, v), v̇ = accelerations(q₀ ⊞ δ, v, t) [Munthe-Kaas 1999].
+/// Theory: Eqs. 6.22 to 6.24.
 
 #include <array>
 #include <complex>

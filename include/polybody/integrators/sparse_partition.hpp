@@ -16,6 +16,7 @@ namespace polybody {
 /// continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The factorisation of
 /// G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M, Gᵀ; G, 0]. T is
 /// `double`; a program that does not use this template does not compile it.
+/// Theory: Eq. 6.26.
 template <class T = double>
 class SparsePartitionOf {
  public:

@@ -7,6 +7,7 @@
 ///   policy.feedback()                                       feedback of the violation in the accelerations
 ///   policy.apply(system, forward, scratch, q, v, t);        corrects positions and velocities after a step
 ///   policy.velocities(system, forward, scratch, q, v, t);   corrects velocities only
+/// Theory: Eqs. 6.25, 6.27.
 
 #include <polybody/integrators/integrator.hpp>
 

@@ -15,6 +15,7 @@ namespace polybody {
 ///   D′₀ = f(t₀),  D′ⱼ₊₁ = D′ⱼ − βⱼ Dⱼ,  β₀ = 1,  βⱼ₊₁ = βⱼ (t₀ − t₋ⱼ₋₁)/(t₋₁ − t₋ⱼ₋₂).
 /// The differences are stored in the history of a state, so a copy of the state includes them:
 ///   [a of the method (nv) | D₀ … D₄ of v̇ | D₀ … D₄ of λ | h₋₅ … h₋₁ | step length `shifted`].
+/// Theory: Eqs. 6.11, 6.12.
 class StepHistory {
   static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }

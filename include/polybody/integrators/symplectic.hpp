@@ -5,6 +5,7 @@
 /// cables, springs). Rigid bodies in space rotate by `FreeRotations`: reversible in time, with the energy of a free
 /// rotation conserved. Other bodies that rotate in space, and damped forces, are integrated with the same order, but
 /// without a bound of the energy error.
+/// Theory: Eqs. 6.33 to 6.37.
 
 #include <polybody/integrators/free_rotations.hpp>
 #include <polybody/integrators/stabilisation.hpp>

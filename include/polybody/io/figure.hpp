@@ -24,10 +24,17 @@ struct Curve {
   double width = 1.5;            ///< line width [pt]
 };
 
+/// Text beside a point of a figure.
+struct FigureText {
+  double x = 0.0, y = 0.0;  ///< point [units of the axes]
+  std::string text{};       ///< printed to the right of the point
+};
+
 /// Figure with one pair of axes. All text is printed literally (UTF-8; '\n' begins a new line).
 struct Figure {
   std::string title{}, x_label{}, y_label{};  ///< text above, below and left of the axes; empty: none
   std::vector<Curve> curves{};                ///< drawn in this order
+  std::vector<FigureText> texts{};            ///< texts beside points
   bool equal_axes = false;                    ///< one unit of x is as long as one unit of y
   bool log_x = false, log_y = false;          ///< logarithmic axes; they omit points that are not positive
   bool legend = true;                         ///< draws a list of the curves' labels
@@ -63,6 +70,8 @@ void check(Figure const& figure) {
   };
   check_range(figure.x_range, figure.log_x, "x_range");
   check_range(figure.y_range, figure.log_y, "y_range");
+  for (FigureText const& t : figure.texts)
+    need(is_finite(t.x) && is_finite(t.y), "the point of the text \"" + t.text + "\" is not finite");
   bool visible = false;
   std::string const title = where;
   for (auto const& [x, y, label, style, colour, width] : figure.curves) {

@@ -173,6 +173,9 @@ std::string script_text(Figure const& figure, std::string const& data, std::size
   if (figure.log_x) text += "set logscale x\n";
   if (figure.log_y) text += "set logscale y\n";
   if (figure.equal_axes) text += "set size ratio -1\n";
+  for (FigureText const& t : figure.texts)
+    text += "set label " + gnuplot_text(t.text) + " at " + all_digits(t.x) + ',' + all_digits(t.y) +
+            " noenhanced front offset character 0.6,0.5\n";
   text += "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     Curve const& curve = figure.curves[i];

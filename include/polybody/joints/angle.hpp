@@ -4,6 +4,7 @@
 /// angle θ = atan2(y, x), where x and y are constraint functions of constraint_functions.hpp. The rate of the angle is
 ///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
 /// Angles are compared modulo a full turn, so that no data are stored between steps.
+/// Theory: Eqs. 4.14 to 4.16, 4.22.
 
 #include <numbers>
 

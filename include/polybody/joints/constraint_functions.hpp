@@ -8,6 +8,7 @@
 /// γ is the part of g̈ that does not depend on the accelerations of the frames. [Haug 1989, §2.4 and §9.4; thesis Eq.
 /// 3.8–3.10 and §3.5.1]
 /// Most joint geometries are an `EquationList` of these equations.
+/// Theory: Eqs. 4.6 to 4.12, 4.19 to 4.21.
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Interface between joint geometries and policies: constraint function, Jacobians and prescribed rate of a joint.
+/// Theory: Eqs. 4.1 to 4.3, 4.17.
 
 #include <array>
 #include <utility>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Driving constraints: relative motions as functions of time.
+/// Theory: Eqs. 4.27, 4.28.
 
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/constraint_functions.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Geometries that couple two motions: gears, rack and pinion.
+/// Theory: Eq. 4.26.
 
 #include <numeric>
 

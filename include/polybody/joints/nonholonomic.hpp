@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Geometries with nonholonomic constraint equations: a blade, a rolling disc.
+/// Theory: Eqs. 4.29 to 4.34.
 
 #include <polybody/joints/joint_axis.hpp>
 

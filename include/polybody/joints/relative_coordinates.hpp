@@ -2,6 +2,7 @@
 /// \file
 /// Six coordinates of one frame relative to another, for any translation and rotation. A bushing acts on these
 /// coordinates.
+/// Theory: Eqs. 4.23 to 4.25.
 
 #include <polybody/joints/joint_axis.hpp>
 

@@ -9,6 +9,7 @@
 ///   PointOnLine = two of PointInPlane                     ConstantOrientation = ParallelAxes + PerpendicularAxes
 /// The joint on the left permits the same motion as the primitives and evaluates the frames of its markers only once.
 /// [Haug 1989, §9.4]
+/// Theory: Eq. 4.13.
 
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/constraint_functions.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Frames and wrenches of markers, through which bodies exchange data with joints and forces, and placements of bodies.
+/// Theory: Eqs. 1.3, 1.5.
 
 #include <polybody/math/quaternion.hpp>
 

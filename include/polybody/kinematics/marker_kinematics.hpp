@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Kinematics of a marker as arrays, independent of the body's type, for joints, forces and solvers.
+/// Theory: Eqs. 1.25, 1.26, 1.28, 1.29.
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Shape functions and quadrature of two-node elements on ξ ∈ [0, 1].
+/// Theory: Eq. 2.13.
 
 #include <array>
 

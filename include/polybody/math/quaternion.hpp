@@ -3,6 +3,7 @@
 /// Unit quaternions (w, x, y, z) as four coordinates of a state. The increments of ⊞ and ⊟ are rotation vectors in body
 /// axes.
 /// [Solà, Deray & Atchuthan 2018, §4; Shabana 2020, §2.4]
+/// Theory: Eqs. 1.15 to 1.17, 1.19.
 
 #include <polybody/math/so3.hpp>
 

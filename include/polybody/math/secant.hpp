@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Numbers that carry the values of a function at both ends of a step and its secant slopes.
+/// Theory: Eq. 6.18.
 
 #include <polybody/math/dual.hpp>
 

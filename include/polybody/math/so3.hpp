@@ -6,6 +6,7 @@
 /// Convention: A = exp(φ̃) transforms components of vectors from body axes to world axes; φ̃ is `skew(φ)`. Increments act
 /// on the right (body axes), A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona & Arnold
 /// 2012, App. A]
+/// Theory: Eqs. 1.6 to 1.14.
 
 #include <array>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Algebra of vectors and matrices with three rows. Explicit entries compile faster than expressions of Eigen.
+/// Theory: Eq. 1.2.
 
 #include <polybody/math/types.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Actions of events, and event values that are held at zero.
+/// Theory: Eqs. 8.15, 8.16.
 
 #include <array>
 

@@ -12,6 +12,7 @@ namespace polybody {
 /// ℓ is the root mean square distance of the joint points from their mean (1 m if all coincide), so that the result
 /// does not depend on the units. Compliant joints of equal stiffness k would share the load in this way if their
 /// rotational stiffness were k ℓ². Multipliers of a body's own equations have the weight 1.
+/// Theory: Eq. 7.13.
 template <class = void>  // compiled only if used
 class MinimumNormOf {
  public:

@@ -2,6 +2,7 @@
 /// \file
 /// Search for redundant and contradictory constraint equations of a model: `redundancy`. The rank of G follows from a
 /// sparse rank-revealing QR factorisation of Gᵀ.
+/// Theory: Eqs. 7.11, 7.12.
 
 #include <Eigen/SparseQR>
 #include <algorithm>

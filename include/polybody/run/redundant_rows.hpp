@@ -6,6 +6,7 @@
 /// equations is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput.
 /// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound. The factorisation divides by
 /// the coefficient of the last row, which may pass through zero during a motion.
+/// Theory: Eq. 7.11.
 
 #include <algorithm>
 #include <limits>

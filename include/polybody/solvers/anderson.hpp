@@ -4,6 +4,7 @@
 ///   x ← x + s,  s = f − c,  c = γ₁ u₁ + γ₂ u₂,  where γ₁ and γ₂ minimise ‖f − γ₁ d₁ − γ₂ d₂‖,
 /// d₁ = f − f₋₁, u₁ = s₋₁ + d₁ = f − c₋₁, and d₂, u₂ are the d₁, u₁ of the previous iterate. For a linear map x + f(x)
 /// with Jacobian J, u₁ is the image J s₋₁ of the last step, and the next correction is J (f − γ₁ d₁ − γ₂ d₂).
+/// Theory: Eqs. 7.6, 7.7.
 
 #include <algorithm>
 #include <cmath>

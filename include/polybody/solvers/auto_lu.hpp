@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear solver of statics, `AutoLu`: dense up to 64 unknowns, sparse above.
+/// Theory: Eq. 7.8.
 
 #include <span>
 

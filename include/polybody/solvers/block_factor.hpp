@@ -11,6 +11,7 @@
 /// computed. Afterwards nodes of at most six unknowns store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the
 /// original blocks. In a solution no node then waits for the triangular solve of another one. If D is nearly singular,
 /// sums of products with these multipliers would cancel. Such a node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
+/// Theory: Eqs. 7.8, 7.9.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Bodies and joints in the block pattern of [A, Gᵀ; G, 0], and the joint between each body and its parent.
+/// Theory: Eq. 7.8.
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear solver `DenseLu`: LU factorisation of a dense matrix.
+/// Theory: Eq. 7.8.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear solver with Eigen's sparse LDLᵀ factorisation.
+/// Theory: Eq. 7.8.
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear solver `EigenSparseLu` with Eigen's sparse LU factorisation.
+/// Theory: Eq. 7.8.
 
 #include <Eigen/SparseLU>
 #include <memory>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Wrapper of linear solvers that adds one step of iterative refinement to each solution.
+/// Theory: Eq. 7.10.
 
 #include <span>
 

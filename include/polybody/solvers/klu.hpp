@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear solver with KLU of SuiteSparse. Requires klu.h and -lklu (Debian: libsuitesparse-dev).
+/// Theory: Eq. 7.8.
 
 #if __has_include(<klu.h>)
 #include <klu.h>

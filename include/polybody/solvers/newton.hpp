@@ -2,6 +2,7 @@
 /// \file
 /// Modified Newton method, which reuses a factorisation as long as the iteration contracts [Hairer & Wanner 1996,
 /// §IV.8].
+/// Theory: Eqs. 7.1 to 7.5.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Wrapper of linear solvers that drops redundant constraint equations.
+/// Theory: Eqs. 7.11, 7.12.
 
 #include <algorithm>
 #include <span>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Arc-length method: paths of static equilibria past limit points.
+/// Theory: Eqs. 7.20, 7.21.
 
 #include <functional>
 #include <limits>

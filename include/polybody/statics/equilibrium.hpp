@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Static equilibrium by Newton's method with load steps, or by a damped motion if Newton's method does not converge.
+/// Theory: Eqs. 7.16, 7.18.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/state_checks.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Equations of `equilibrium` for Newton's method along the load path (`EquilibriumPath`).
+/// Theory: Eq. 7.14.
 
 #include <polybody/integrators/unknown_kinds.hpp>
 #include <polybody/math/sequence.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Minimum-norm solution of singular equations of statics.
+/// Theory: Eq. 7.17.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/static_tangent.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Stability of an equilibrium: number of negative eigenvalues of its stiffness.
+/// Theory: Eq. 7.19.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Matrix of the equations of statics: scaling, assembly, factorisation and solution.
+/// Theory: Eq. 7.15.
 
 #include <cmath>
 #include <cstdint>

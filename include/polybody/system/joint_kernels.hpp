@@ -2,6 +2,7 @@
 /// \file
 /// Loops over all joints of one type in a model. The loops depend on the type of the joint, but not on the type of the
 /// model (compare body_kernels.hpp).
+/// Theory: Eqs. 4.4, 4.5, 4.18, 5.3 to 5.6.
 
 #include <new>
 

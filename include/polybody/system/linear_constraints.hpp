@@ -2,6 +2,7 @@
 /// \file
 /// Constraint equations of linear joints, Φ = C_a e_a + C_b e_b − c, with the coordinates e_a, e_b of the two bodies
 /// and constant C [thesis §3.5.4].
+/// Theory: Eq. 5.13.
 
 #include <string>
 

@@ -3,6 +3,7 @@
 /// Evaluation of a system over an energy-conserving step from q₀ to q₁, with secant slopes instead of derivatives. The
 /// changes of every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV minus the dissipated energy,   Ḡ Δq = ΔΦ.
+/// Theory: Eq. 6.19.
 
 #include <polybody/system/system.hpp>
 

@@ -14,6 +14,7 @@ namespace polybody::laws {
 ///     struct SpringCase {
 ///       static SpringDamper force();
 ///       static std::array<Frame<double>, 2> frames(Numbers&);  // optional; the default is random frames
+///       static std::array<double, 2> states(Numbers&);         // optional; the default is random states
 ///     };
 ///     bool const spring_obeys = obeys<SpringCase, ForceLaws>("Spring");
 template <class Case>
@@ -39,8 +40,9 @@ struct ForceLaws {
       return all;
     }
   }
-  /// Random states in [−1, 1].
+  /// States from the case, or random states in [−1, 1] if the case has no function `states`.
   std::array<double, std::size_t(states_of<F>())> some_states() {
+    if constexpr (requires { Case::states(number); }) return Case::states(number);
     std::array<double, std::size_t(states_of<F>())> some{};
     for (double& x : some) x = number();
     return some;

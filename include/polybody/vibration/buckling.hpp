@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Buckling loads as eigenvalues of the linearised stiffness.
+/// Theory: Eqs. 7.26, 7.27.
 
 #include <polybody/vibration/modes.hpp>
 

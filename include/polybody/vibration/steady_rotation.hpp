@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Small vibrations about a steady rotation.
+/// Theory: Eq. 7.25.
 
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/equilibrium_options.hpp>

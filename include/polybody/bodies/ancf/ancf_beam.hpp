@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Fully parameterised two-node ANCF beam in space [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4].
+/// Fully parameterised two-node ANCF beam in space [Shabana & Yakoub 2001; thesis §3.5.4]. Theory: Eqs. 2.33 to 2.35.
 
 #include <vector>
 

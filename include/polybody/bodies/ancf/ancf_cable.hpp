@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Gradient-deficient ANCF cable in space [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006].
+/// Theory: Eqs. 2.12 to 2.16, 2.29 to 2.31.
 
 #include <polybody/bodies/ancf/cable_laws.hpp>
 #include <polybody/bodies/shared/elastic_chain.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Elastic force of the fully parameterised ANCF beam by three-dimensional continuum mechanics.
+/// Theory: Eqs. 2.41 to 2.46.
 
 #include <tuple>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Elastic force of the fully parameterised ANCF beam by structural mechanics on its axis.
+/// Theory: Eqs. 2.37 to 2.39.
 
 #include <tuple>
 

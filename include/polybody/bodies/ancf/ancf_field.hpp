@@ -6,6 +6,7 @@
 ///   e = (r, r_x, r_y, r_z) of the first node, then of the second.
 /// The reference is a field of the same kind. Strains are relative to the reference, in the axes of its sections
 /// (`SectionFrame` of r_y, r_z).
+/// Theory: Eqs. 2.33, 2.41.
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 #include <polybody/bodies/shared/bar.hpp>

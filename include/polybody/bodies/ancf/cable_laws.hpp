@@ -2,6 +2,7 @@
 /// \file
 /// Strain laws of a cable: axial strain in the plane or in space, and bending in space, for the cubic Hermite element
 /// with coordinates (r, r′) at both ends.
+/// Theory: Eqs. 2.17, 2.18, 2.24 to 2.28.
 
 #include <polybody/bodies/shared/strain_group.hpp>
 #include <polybody/math/element_functions.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Bodies in Cholesky coordinates, for which the mass matrix is the identity [Yakoub & Shabana 1999; thesis §4.4].
+/// Theory: Eq. 2.47.
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Mean orthonormal frame of a deformable section.
+/// Theory: Eq. 2.46.
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Gradient-deficient ANCF cable in the plane.
+/// Theory: Eqs. 2.12 to 2.18, 2.32.
 
 #include <polybody/bodies/ancf/cable_laws.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>

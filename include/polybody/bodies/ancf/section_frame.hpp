@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Orthonormal frame of a deformable section, with its rotation and derivatives.
+/// Theory: Eqs. 2.36, 2.40.
 
 #include <array>
 

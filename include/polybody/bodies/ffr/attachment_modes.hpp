@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Attachment modes and free modes of a structure in mean axes, and statically determinate supports.
+/// Theory: Eq. 2.95.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 

@@ -3,6 +3,7 @@
 /// Structures made of bars: space beam element [thesis App. A; Przemieniecki 1968, §5.6, §11.4]. The code corrects
 /// errata of thesis Eq. A.1: the correct entries of its rows 11 and 12 are −2ξ + 3ξ² and 2ξ − 3ξ². The intermediate
 /// element frames of thesis Eqs. A.2–A.3 permit any direction of an element.
+/// Theory: Eqs. 2.96, 2.97, 2.99, 3.14.
 
 #include <polybody/bodies/ffr/structure.hpp>
 #include <polybody/math/element_functions.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A].
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3]. Theory: Eqs. 2.73 to 2.88, 3.5, 3.14.
 
 #include <memory>
 

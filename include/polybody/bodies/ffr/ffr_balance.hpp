@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Inertia force M a and the other forces of the body of a floating frame (equations in ffr.hpp).
+/// Theory: Eqs. 2.85 to 2.88.
 
 #include <span>
 

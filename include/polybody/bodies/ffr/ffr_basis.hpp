@@ -3,6 +3,7 @@
 /// Deformation coordinates q of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
 /// (N×n) of the nodal coordinates, e = Φ q. A basis consists of all free nodal coordinates, of vibration modes, or of
 /// the modes of Craig & Bampton [1968].
+/// Theory: Eqs. 2.91 to 2.94.
 
 #include <algorithm>
 #include <set>

@@ -3,6 +3,7 @@
 /// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. The integrals
 /// of a structure follow from its inertia shape integrals by projection onto a basis, e = Φ q. A user can also provide
 /// the integrals.
+/// Theory: Eqs. 2.76 to 2.80, 2.82 to 2.84.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 

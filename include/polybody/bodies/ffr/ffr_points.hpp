@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Material points of the body of a floating frame, with the matrices of their displacement, small rotation and strain.
+/// Theory: Eqs. 2.73, 2.100.
 
 #include <algorithm>
 #include <optional>

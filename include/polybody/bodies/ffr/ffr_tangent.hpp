@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Tangent of the body of a floating frame in space.
+/// Theory: Eqs. 2.85 to 2.89.
 
 #include <span>
 

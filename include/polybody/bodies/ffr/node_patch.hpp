@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Distributing coupling of several nodes of a structure, such as the seat of a pin or the area under a wheel.
+/// Theory: Eq. 2.98.
 
 #include <polybody/bodies/ffr/structure.hpp>
 

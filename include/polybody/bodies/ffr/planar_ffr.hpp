@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Floating frame of reference in the plane [Shabana 2013, ch. 5].
+/// Floating frame of reference in the plane [Shabana 2013, ch. 5]. Theory: Eq. 2.90.
 
 #include <memory>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Inertia and stiffness of the body of a planar floating frame as functions of its deformation coordinates.
+/// Theory: Eqs. 2.76 to 2.80.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear finite element model of one body in its own axes, for a floating frame of reference (ffr.hpp).
+/// Theory: Eq. 2.81.
 
 #include <array>
 #include <vector>

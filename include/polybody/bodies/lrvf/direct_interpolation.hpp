@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Linear interpolation of the rotation vectors of the nodes, a policy of `Lrvf` for comparison.
+/// Theory: Eq. 2.68.
 
 #include <array>
 #include <numbers>

@@ -2,6 +2,7 @@
 /// \file
 /// Linear interpolation of directors, a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
 /// 2002].
+/// Theory: Eq. 2.70.
 
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>

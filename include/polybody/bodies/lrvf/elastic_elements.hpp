@@ -2,6 +2,7 @@
 /// \file
 /// Elastic elements of the spatial `Lrvf`: forces, tangents and energy from the sections of a quadrature, without
 /// inertia.
+/// Theory: Eqs. 2.56, 2.57, 2.60 to 2.63.
 
 #include <array>
 #include <concepts>

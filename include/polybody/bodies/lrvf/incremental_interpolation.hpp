@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Interpolation of the increments of the nodal rotations, a policy of `Lrvf` for comparison.
+/// Theory: Eq. 2.71.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 

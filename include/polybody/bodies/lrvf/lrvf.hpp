@@ -2,6 +2,7 @@
 /// \file
 /// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986b;
 /// thesis §2.3–2.5].
+/// Theory: Eqs. 2.55 to 2.59, 2.72.
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Large rotation vector formulation in the plane, a planar geometrically exact beam.
+/// Theory: Eqs. 2.49 to 2.53.
 
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>

@@ -2,6 +2,7 @@
 /// \file
 /// Rotation interpolation of `Lrvf`, for comparison: the directors are interpolated linearly, then made orthonormal
 /// [Romero 2004, §4].
+/// Theory: Eq. 2.69.
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 

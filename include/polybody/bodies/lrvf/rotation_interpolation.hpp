@@ -3,6 +3,7 @@
 /// Rotation interpolation between the nodes of a beam element: the concepts of a policy of `Lrvf`, and the default
 /// policy. Rotations of the nodes are unit quaternions. δθ₁, δθ₂ and all angular velocities are in the axes of the
 /// rotating section.
+/// Theory: Eqs. 2.64 to 2.67.
 
 #include <polybody/kinematics/frame.hpp>
 

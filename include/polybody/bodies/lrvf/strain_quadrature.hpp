@@ -2,6 +2,7 @@
 /// \file
 /// Policies for the quadrature of the strains of `Lrvf` and `planar::Lrvf` along an element. With linear shapes the
 /// quadrature determines whether a slender element locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
+/// Theory: Eq. 2.54.
 
 #include <array>
 #include <cstddef>

@@ -2,6 +2,7 @@
 /// \file
 /// Rigid body in the plane, with the coordinates (x, y, θ) of the centre of mass and their rates as generalised
 /// velocities.
+/// Theory: Eq. 2.10.
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>

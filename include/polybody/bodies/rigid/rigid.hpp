@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Rigid body in space with a unit quaternion [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012].
+/// Theory: Eqs. 1.4, 1.20, 1.21, 1.27, 1.31, 2.1 to 2.6.
 
 #include <algorithm>
 #include <concepts>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3].
+/// Theory: Eqs. 1.22 to 1.24, 2.7 to 2.9.
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>

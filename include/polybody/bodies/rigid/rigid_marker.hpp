@@ -3,6 +3,7 @@
 /// Kinematics of a marker on a rigid body. They are computed in SIMD registers, because every evaluation of a model
 /// computes them for every marker. Eigen loads, multiplies and stores each entry of a vector of three numbers
 /// separately.
+/// Theory: Eqs. 1.1, 1.27.
 
 #include <cstring>
 

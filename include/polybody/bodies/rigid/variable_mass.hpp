@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Rigid bodies whose mass changes with time, such as tanks that empty, rockets, and belts that are loaded.
+/// Theory: Eq. 2.11.
 
 #include <array>
 #include <functional>

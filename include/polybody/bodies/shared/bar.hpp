@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Physical specification of a straight prismatic bar, from which every body formulation can be made.
+/// Theory: Eq. 3.13.
 
 #include <functional>
 #include <numbers>

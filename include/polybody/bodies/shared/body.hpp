@@ -2,6 +2,7 @@
 /// \file
 /// Concepts of bodies, which list the members that a body type must have. Further contents are the workspaces of loops
 /// over elements, and the load stiffness of a marker by dual numbers.
+/// Theory: Eq. 1.30.
 
 #include <span>
 

@@ -2,6 +2,7 @@
 /// \file
 /// Chain of nodes whose elastic and damping force follows from groups of strains (`StrainGroup`), with its tangent in
 /// blocks for pairs of nodal vectors.
+/// Theory: Eqs. 2.19 to 2.23.
 
 #include <tuple>
 #include <utility>

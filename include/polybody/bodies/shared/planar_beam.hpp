@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Flexible bar in the plane as a chain of equal two-node elements.
+/// Theory: Eq. 2.32.
 
 #include <algorithm>
 #include <tuple>

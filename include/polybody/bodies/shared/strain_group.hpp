@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Elastic force and tangent of an element from a group of strains at its quadrature points.
+/// Theory: Eqs. 2.20 to 2.23.
 
 #include <numeric>
 

@@ -2,6 +2,7 @@
 /// \file
 /// Strain laws of a `StrainGroup`, and its quadrature points: strain energy, and the discrete-gradient force. Without
 /// dissipation, the work of this force over a step is the negative change of the energy.
+/// Theory: Eq. 2.19.
 
 #include <array>
 

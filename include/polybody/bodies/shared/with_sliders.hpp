@@ -2,6 +2,7 @@
 /// \file
 /// Point that slides along a flexible body, such as a pulley along a rope. Its position is an additional coordinate of
 /// the body.
+/// Theory: Eq. 2.48.
 
 #include <algorithm>
 #include <vector>

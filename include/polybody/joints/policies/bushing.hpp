@@ -2,6 +2,7 @@
 /// \file
 /// Linear bushing: policy that replaces a joint by a spring and damper with 6×6 matrices.
 /// Nonlinear bushing: joint policy with a force law for each component of the relative motion, and common force laws.
+/// Theory: Eqs. 5.8, 5.9.
 
 #include <tuple>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Penalty policies: a spring and a damper replace each constraint equation.
+/// Theory: Eq. 5.7.
 
 #include <polybody/joints/policies/policy.hpp>
 

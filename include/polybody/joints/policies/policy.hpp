@@ -2,6 +2,7 @@
 /// \file
 /// Kinds of joint policies, and the policy `Constraint`. The assembly treats all policies of one kind with the same
 /// code.
+/// Theory: Eq. 5.1.
 
 #include <polybody/joints/constraint_terms.hpp>
 
