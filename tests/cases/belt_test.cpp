@@ -183,18 +183,22 @@ TEST(Belt, MovingCentreStretchesBothSpans) {
        position(t.model, x, t.carriage.at({0, 0, 0})).x() - 0.8, 0.8 * ((1.0 + 500.0 / 2e4) / 1.01 - 1.0), 1e-8);
   EXPECT_LT(audit.relative(), 1e-6) << audit;
 }
-// Around the pretension ε both spans are springs k = EA (1 + ε)/l for the rotation of the free pulley and springs
-// EA/L = k for the carriage, with L = l/(1 + ε).
-TEST(Belt, VibratesAtTheFrequencyOfItsSpans) {
-  Tensioner const t(400.0, 0.0);
-  DampedModes const found = damped_modes(t.model, t.model.reference_state());
-  double const k = 2e4 * 1.01 / 0.8, turning = 0.1 * std::sqrt(2.0 * k / inertia), sliding = std::sqrt(2.0 * k / 4.0);
-  for (double const expected : {turning, sliding}) {
-    double nearest = expected;
-    for (Index i = 0; i < found.eigenvalue.size(); ++i)
-      nearest = std::min(nearest, std::abs(found.eigenvalue[i] - std::complex<double>(0.0, expected)));
-    held_within(closed_form("frequencies of a pulley in a belt [rad/s]", "√(2 k R²/J), √(2 k/m)", "damped modes"),
-                nearest, 1e-6 * expected, {equals("mode", expected), expected});
+// Around the pretension ε each span is a spring k = EA (1 + ε)/l with the damper c (1 + ε)/l, for the rotation of the
+// free pulley (J s² + 2 R² (c s (1 + ε)/l + k) = 0) and for the carriage (m s² + 2 (c s (1 + ε)/l + k) = 0).
+TEST(Belt, VibratesWithTheEigenvaluesOfItsSpans) {
+  for (double const damping : {0.0, 60.0}) {
+    Tensioner const t(400.0, damping);
+    DampedModes const found = damped_modes(t.model, t.model.reference_state());
+    double const k = 2e4 * 1.01 / 0.8, c = damping * 1.01 / 0.8;
+    for (double const mass : {inertia / 0.01, 4.0}) {  // J/R², mass of carriage and pulley
+      std::complex<double> const expected(-c / mass, std::sqrt(2.0 * k / mass - c * c / (mass * mass)));
+      double nearest = 1e9;
+      for (Index i = 0; i < found.eigenvalue.size(); ++i)
+        nearest = std::min(nearest, std::abs(found.eigenvalue[i] - expected));
+      held_within(
+          closed_form("eigenvalues of a pulley in a belt [1/s]", "m s² + 2 (c s (1 + ε)/l + k) = 0", "damped modes"),
+          nearest, 1e-6 * std::abs(expected), {equals("c", damping) + ", " + equals("m", mass), std::abs(expected)});
+    }
   }
 }
 

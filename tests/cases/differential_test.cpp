@@ -14,6 +14,7 @@
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/vibration/modes.hpp>
 
 #include "support/held.hpp"
 
@@ -98,6 +99,21 @@ TEST(Differential, TurnsTheFreeShaftTwiceAsFastIfTheOtherOneIsBlocked) {
   Vec3 const w = Ideal({0.2, 0.5, 1e9}, {4.0, 0.0, 0.0}).rates;
   EXPECT_NEAR(w[1], 2.0 * w[0], 1e-8);
   EXPECT_NEAR(w[0], 4.0 / (0.2 + 4.0 * 0.5), 1e-7);  // α_c (J_c + 4 J_l) = M_c
+}
+
+// The twist φ vibrates with I s² + c s + k = 0, 1/I = 1/(4 J_l) + 1/(4 J_r) + 1/J_c.
+TEST(Differential, HasTheEigenvaluesOfItsTwist) {
+  Axle const axle({0.2, 0.5, 0.7}, Vec3::Zero(), 300.0);
+  DampedModes const found = damped_modes(axle.model, axle.x);
+  double const moving = 1.0 / (0.25 / 0.5 + 0.25 / 0.7 + 1.0 / 0.2), decay = 10.0 / moving;
+  double const expected[] = {-decay + std::sqrt(decay * decay - 300.0 / moving),
+                             -decay - std::sqrt(decay * decay - 300.0 / moving)};
+  for (double const s : expected) {
+    double nearest = 1e9;
+    for (Index i = 0; i < found.eigenvalue.size(); ++i) nearest = std::min(nearest, std::abs(found.eigenvalue[i] - s));
+    held_within(closed_form("eigenvalues of the twist of a differential [1/s]", "I s² + c s + k = 0", "damped modes"),
+                nearest, 1e-6 * std::abs(s), {equals("s", s), std::abs(s)});
+  }
 }
 
 // Many turns: the twist stays that of the torque, also from a state in which a shaft has turned by more than half a

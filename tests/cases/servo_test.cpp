@@ -77,6 +77,24 @@ TEST(Servos, PdServoRestsBelowItsTarget) {
   EXPECT_NEAR(with_integral.model.states(std::as_const(y), servo)[0], load * std::sin(target), 1e-6);
 }
 
+// A servo on a displacement and one on a distance share a weight: k₁ (r₁ − x) + k₂ (r₂ − x) = m g for the height x.
+TEST(Servos, OnADisplacementAndOnADistanceShareAWeight) {
+  using Slide = Joint<Prismatic>;
+  Model<Bodies<Rigid<>>, Joints<Slide>, Forces<OnTranslation<Servo<>>, OnDistance<Servo<>>>> model{
+      Gravity{0, 0, -9.81}};
+  auto const body = model.add(Rigid<>(3.0, Mat3(Mat3::Identity()), Placement::at({0, 0, 1.0})), "weight");
+  auto const slide =
+      model.connect(Slide{Prismatic{.axis = Vec3::UnitZ()}}, model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "slide");
+  model.apply(OnTranslation<Servo<>>{{.target = {1.2}, .proportional_gain = 500.0, .derivative_gain = 20.0}}, slide,
+              "first");
+  model.apply(OnDistance<Servo<>>{{.target = {1.1}, .proportional_gain = 300.0, .derivative_gain = 20.0}},
+              model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "second");
+  State x = model.reference_state();
+  equilibrium(model, x);
+  held(by_formula("height of a weight on two servos [m]", "k₁ (r₁ − x) + k₂ (r₂ − x) = m g", "equilibrium"), x.q[2],
+       (500.0 * 1.2 + 300.0 * 1.1 - 3.0 * 9.81) / 800.0, 1e-9);
+}
+
 /// Compares angle, rate and last state of a servo at four times after a step of the target, and checks the energy.
 template <class L>
 void expect_step(L const& law, char const* what, double step, std::vector<Vec3> const& exact) {

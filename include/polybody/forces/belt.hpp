@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Elastic belt over two or more pulleys, with creep.
+/// Theory: Eqs. 3.16 to 3.21.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,7 @@ namespace polybody {
 /// Span of a belt in one state.
 struct BeltSpan {
   double length = 0.0;   ///< distance of its tangent points l [m]
-  double strain = 0.0;   ///< ε = l/L − 1 with the unstretched length L; negative if the span is slack
+  double strain = 0.0;   ///< relative elongation ε = l/L − 1 with the unstretched length L; negative if the span is slack
   double tension = 0.0;  ///< N ≥ 0 [N]
 };
 
@@ -41,11 +42,12 @@ struct BeltAndPulley {
   /// One number for each pulley.
   using Numbers = std::array<double, N>;
 
-  Numbers radii = {};                         ///< (N) radii R of the pulleys [m]; each must be given
-  std::array<Vec3, N> centres = origins();    ///< (N) centres, the markers, in the reference configuration, world axes [m]
-  Required<double> axial_stiffness;           ///< EA [N]: tension per strain
-  double damping = 0.0;                       ///< c [N s]: tension per strain rate; fades out below the pretension
-  Required<double> pretension;                ///< tension of all spans in the reference configuration [N]
+  Numbers radii = {};  ///< (N) radii R of the pulleys [m]; each must be given
+  std::array<Vec3, N> centres =
+      origins();                     ///< (N) centres, the markers, in the reference configuration, world axes [m]
+  Required<double> axial_stiffness;  ///< EA [N]: tension per strain
+  double damping = 0.0;              ///< c [N s]: tension per strain rate; fades out below the pretension
+  Required<double> pretension;       ///< tension of all spans in the reference configuration [N]
   std::array<int, N> senses = all_senses(1);  ///< (N) s: +1 for a pulley that turns about +n while the belt runs from
                                               ///< pulley 0 to pulley 1, otherwise −1; a crossed belt has +1 and −1
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Differential: distributes the torque of a carrier to two shafts on the same axis.
+/// Theory: Eq. 3.28.
 
 #include <numbers>
 

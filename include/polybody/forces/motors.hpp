@@ -2,6 +2,7 @@
 /// \file
 /// Scalar laws of motors: direct-current motor, and torque by a table over speed. For `OnAngle` and `OnTurns`, and for
 /// linear motors for `OnTranslation`.
+/// Theory: Eqs. 3.26 to 3.27.
 
 #include <polybody/forces/scalar_force.hpp>
 #include <polybody/math/monotone_table.hpp>
@@ -24,7 +25,7 @@ struct DcMotor {
   Required<double> resistance;  ///< R [Ω]
   Required<double> inductance;  ///< L [H]
   Required<double> constant;    ///< K [N m/A], equal to the back electromotive force per speed [V s/rad]
-  double gear_ratio = 1.0;      ///< n: turns of the rotor per turn of the joint; negative for opposite senses
+  double gear_ratio = 1.0;      ///< ratio n: turns of the rotor per turn of the joint; negative for opposite senses
 
   void check(std::string const& name, ScalarUnits const&) const {
     check_time_function(voltage, name + ": the voltage");

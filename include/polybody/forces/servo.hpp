@@ -2,6 +2,7 @@
 /// \file
 /// Scalar laws of servos: P, PD and PID control with bounds of force, speed and rate. For `OnAngle`, `OnTurns`,
 /// `OnTranslation` and `OnDistance`.
+/// Theory: Eqs. 3.23 to 3.25.
 
 #include <limits>
 

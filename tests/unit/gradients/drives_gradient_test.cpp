@@ -50,19 +50,19 @@ Scenario<Mechanism> driven_pulleys(std::span<double const> p) {
                      .most_force = 6.0}},
               pin, "servo");
   State const start = model.reference_state();
-  std::vector<Output<Mechanism>> outputs{{"x of a point of the second pulley [m]", [=](Mechanism const& m, State const& x) {
-                                            return position(m, x, second.at({0.1, 0, 0}))[0];
-                                          }}};
+  std::vector<Output<Mechanism>> outputs{
+      {"x of a point of the second pulley [m]",
+       [=](Mechanism const& m, State const& x) { return position(m, x, second.at({0.1, 0, 0}))[0]; }}};
   return {std::move(model), start, {.end_time = 0.3, .step = 1e-3, .max_step_halvings = 0}, std::move(outputs)};
 }
-/// The same scenario; the output at the end is the objective function.
+/// Scenario of `driven_pulleys` with the output at the end as objective function.
 auto rated_pulleys(std::span<double const> p) {
   Scenario<Mechanism> scenario = driven_pulleys(p);
   auto const objective = [f = scenario.outputs[0].value](Mechanism const& m, State const& x) { return f(m, x); };
   return with_objective(std::move(scenario), objective);
 }
-/// The equations are differenced over 4·10⁻⁴ of a parameter. With these values no step ends as close to the bound of the
-/// force.
+/// The equations are differenced over 4·10⁻⁴ of a parameter. With these values no step ends as close to the bound of
+/// the force.
 std::vector<Parameter> const parameters{{"proportional gain [N m/rad]", 21.0},
                                         {"integral gain [N m/(rad s)]", 30.0},
                                         {"stiffness [N]", 3e3},
