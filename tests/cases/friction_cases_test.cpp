@@ -101,7 +101,8 @@ TEST(SlidingBlock, WithABristleStopsAsByCoulombsLaw) {
       block.at(Vec3(0, 0, 0)), model.ground().at({0, 0, 0}));
   State x = model.reference_state();
   model.set_velocity(x, block, {3, 0, 0}, {0, 0, 0});
-  Event const stop{.name = "stop", .value = [](State const& s) { return s.v[0]; }, .terminal = true, .tolerance = 1e-12};
+  Event const stop{
+      .name = "stop", .value = [](State const& s) { return s.v[0]; }, .terminal = true, .tolerance = 1e-12};
   simulate(model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
            {.end_time = 1.2, .step = 1e-4, .events = {stop}})
       .run();

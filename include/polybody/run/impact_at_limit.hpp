@@ -67,9 +67,9 @@ class ImpactOfJoint {
     forward_.response(system_, along, move, reactions);
     double const mobility = along.dot(move);
     if (!(mobility > 1e-12 * along.norm() * move.norm()))
-      throw InvalidInput("limit.immobile",
-                         {"joint \"", ErrorObject{place.name}, "\" cannot rebound from its limit at t = ",
-                          ErrorTime{x.t}, " s: other joints prescribe or prevent its motion."});
+      throw InvalidInput("limit.immobile", {"joint \"", ErrorObject{place.name},
+                                            "\" cannot rebound from its limit at t = ", ErrorTime{x.t},
+                                            " s: other joints prescribe or prevent its motion."});
     x.v -= (1.0 + limit_.restitution) * at.rate / mobility * move;
   }
 
