@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/shapes/compound.hpp>
@@ -135,6 +136,19 @@ TEST(BoxOnPlaneCase, SettlesOnEachFace) {
       axes.row(1) = axes.row(2).cross(axes.row(0));
       expect_to_settle(size, axes, size[axis]);
     }
+}
+
+// A planar body has the eight corners of a box. The plane is vertical to y: its marker is rotated about x.
+TEST(BoxOnPlaneCase, SettlesInAPlanarModel) {
+  Model<Bodies<planar::Rigid>, Joints<>, Forces<Box>> model{Gravity{0, -g, 0}};
+  auto const body = model.add(planar::Rigid(mass, 0.002, Placement::planar(0, 0.08, 0.2)), "box");
+  model.apply(
+      Box{{.size = {side, side, side}}, {.stiffness = k, .damping = 60.0}, {.coefficient = 0.5, .slip_speed = 1e-3}},
+      body.at(Vec2(0, 0)), model.ground().at(Placement::at({0, 0, 0}, {-0.5 * EIGEN_PI, 0, 0})), "floor");
+  State x = model.reference_state();
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 1.0, .step = 5e-4}).run();
+  EXPECT_NEAR(x.q[1], 0.5 * side - mass * g / (4.0 * k), 1e-8);
+  EXPECT_NEAR(x.q[2], 0.0, 1e-7);
 }
 
 // Small rotation about y on four springs without friction: J θ̈ = −4 k b² θ + m g h θ. The reaction m g of the

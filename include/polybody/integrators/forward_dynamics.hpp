@@ -300,7 +300,8 @@ class ForwardDynamics {
     return bad < 0 && first_not_finite(a) < 0;
   }
 
-  /// Repeats the solution of `accelerations` until the forces that follow reactions belong to λ. \throws NewtonConvergenceFailure
+  /// Repeats the solution of `accelerations` until the forces that follow reactions belong to λ. \throws
+  /// NewtonConvergenceFailure
   [[gnu::cold]] void follow_reactions(System& system, VecX& a, VecX& lambda) {
     for (int k = 0; k < 200; ++k) {
       open_ = lambda;
@@ -314,10 +315,11 @@ class ForwardDynamics {
       open_ -= lambda;
       if (largest_size(open_) <= 1e-12 * largest_size(lambda)) return;
     }
-    throw NewtonConvergenceFailure("motion.friction", {"The reactions at t = ", ErrorTime{system.at().t},
-                                           " s do not converge with the ", ErrorObject{"friction"},
-                                           " that follows them: the friction locks the mechanism. Use a smaller "
-                                           "coefficient, or an implicit integrator."});
+    throw NewtonConvergenceFailure(
+        "motion.friction",
+        {"The reactions at t = ", ErrorTime{system.at().t}, " s do not converge with the ", ErrorObject{"friction"},
+         " that follows them: the friction locks the mechanism. Use a smaller "
+         "coefficient, or an implicit integrator."});
   }
 
   /// Solver of [M, Gᵀ; G, 0]. If the matrix has constant parts, the solver factorises them only once.
