@@ -60,14 +60,12 @@ struct UrdfPoint {
 /// bodies, joints and forces can be added. Joints of the file have the policy P and the names of the file. The lists
 /// contain further types of joints and forces; Fs are the types of flexible links.
 /// - A link with mass is a body in the axes of the link. A link without mass is a frame of another body.
-/// - A revolute, continuous or prismatic joint is a `Revolute` or `Prismatic` joint, a planar joint a `PlanarJoint`,
-/// and
-///   a fixed joint between links with mass a `Weld`. A floating joint adds no joint.
-/// - The damping of a joint is the viscous part of a `DryFriction`; with `slip_speeds` of the options, the friction of
-/// the
-///   file is its dry part. With `stops`, the limits of revolute and prismatic joints are `Limit` forces. Effort and
-///   speed limits are data: `robot().joints`.
+/// - Revolute and continuous joints are `Revolute` joints, prismatic ones `Prismatic`, planar ones `PlanarJoint`.
+/// - A fixed joint between links with mass is a `Weld`. A floating joint adds no joint.
+/// - The damping of a joint is the viscous part of a `DryFriction`. With `slip_speeds`, its friction is the dry part.
+/// - With `stops`, the limits of revolute and prismatic joints are `Limit` forces.
 /// - A joint that mimics another one is a `Gear` if both are revolute joints on one link with parallel axes.
+/// - Limits of effort and speed are data: `robot().joints`.
 template <class P, class JointList = Joints<>, class ForceList = Forces<>, class... Fs>
 class UrdfModel;
 /// Model with these types.
@@ -94,7 +92,9 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   UrdfModel(UrdfRobot robot, UrdfOptions const& options, UrdfFlexibleLink<Fs> const&... flexible)
       : model(options.gravity), robot_(std::move(robot)), root_(options.root), bodies_(robot_.links.size()) {
     options.placement.check("UrdfOptions");
-    poses_ = detail::urdf_poses(robot_, {.frame = options.placement}, {});
+    for (UrdfLink const& link : robot_.links)
+      poses_.push_back({{Vec3(options.placement.origin + options.placement.axes * link.frame.origin),
+                         Mat3(options.placement.axes * link.frame.axes)}});
     (add_flexible(flexible), ...);
     std::vector<bool> is_body;
     for (std::size_t i = 0; i < bodies_.size(); ++i)

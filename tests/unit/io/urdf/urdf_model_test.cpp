@@ -287,9 +287,15 @@ TEST(UrdfModel, RefusesMimicsThatNoGearRepresents) {
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-1' offset='0.1'/>"), "the offset is 0.1 rad"));
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='1'/>"), "both joints turn equally"));
   EXPECT_TRUE(has(refused("<mimic joint='left' multiplier='-3.14159265'/>"), "is not a ratio of integers"));
-  UrdfModel<Constraint> const loose(read_urdf_text(gripper("<mimic joint='left' multiplier='1'/>"), "gripper.urdf"),
-                                    {.root = UrdfRoot::fixed, .free_mimics = true});
-  EXPECT_EQ(loose.robot().joints[1].mimic->multiplier, 1.0);
+  UrdfOptions options{.root = UrdfRoot::fixed};
+  options.free_mimics = true;
+  UrdfModel<Constraint> const loose(
+      read_urdf_text(gripper("<mimic joint='left' multiplier='2' offset='0.3'/>"), "gripper.urdf"), options);
+  // the reference has all joints at zero; a state without motions follows the mimic
+  EXPECT_LT((loose.placement(loose.model.reference_state(), "right").axes - identity()).norm(), 1e-15);
+  EXPECT_LT((loose.placement(loose.state(), "right").axes - roll_pitch_yaw(0, 0, 0.3)).norm(), 1e-15);
+  State const x = loose.state({{"left", {0.1}}});
+  EXPECT_NEAR(joint_angle(loose.model, x, loose.joint<Revolute>("right")), 0.5, 1e-15);
 }
 
 TEST(UrdfModel, RefusesWithFileLineAndElement) {
