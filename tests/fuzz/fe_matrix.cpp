@@ -1,7 +1,7 @@
 // Matrices of finite element programs for the nodes 7 and 9. The first letter selects the reader: A (Abaqus), D (DMIG),
-// O (OP4), C (CalculiX), H (Ansys), any other (Matrix Market). The input of C and H begins with the .dof or mapping file,
-// which ends at a line "====". An accepted matrix is finite, has a diagonal, and is written and read again with the same
-// result. A matrix of a symmetric format is symmetric.
+// O (OP4), C (CalculiX), H (Ansys), any other (Matrix Market). The input of C and H begins with the .dof or mapping
+// file, which ends at a line "====". An accepted matrix is finite, has a diagonal, and is written and read again with
+// the same result. A matrix of a symmetric format is symmetric.
 #include <polybody/fe_matrices.hpp>
 
 #include "fuzz/lines.hpp"
@@ -15,12 +15,18 @@ FeNodes const& nodes() {
 
 FeMatrix read(char program, std::string const& file, std::string const& rows) {
   switch (program) {
-    case 'A': return read_abaqus_matrix(file, nodes());
-    case 'D': return read_dmig_matrix(file, "K", nodes());
-    case 'O': return read_op4_matrix(file, "K", nodes());
-    case 'C': return read_calculix_matrix(file, rows, nodes());
-    case 'H': return read_ansys_matrix(file, rows, nodes());
-    default: return read_matrix_market(file, nodes());
+    case 'A':
+      return read_abaqus_matrix(file, nodes());
+    case 'D':
+      return read_dmig_matrix(file, "K", nodes());
+    case 'O':
+      return read_op4_matrix(file, "K", nodes());
+    case 'C':
+      return read_calculix_matrix(file, rows, nodes());
+    case 'H':
+      return read_ansys_matrix(file, rows, nodes());
+    default:
+      return read_matrix_market(file, nodes());
   }
 }
 

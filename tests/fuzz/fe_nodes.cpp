@@ -1,6 +1,6 @@
-// Nodes of finite element programs. The first letter selects the reader: A (Abaqus), N (Nastran), C (CalculiX), any other
-// (Ansys). Accepted nodes are finite and sorted by their labels. They are written in Abaqus' format and read again with
-// the same result.
+// Nodes of finite element programs. The first letter selects the reader: A (Abaqus), N (Nastran), C (CalculiX), any
+// other (Ansys). Accepted nodes are finite and sorted by their labels. They are written in Abaqus' format and read
+// again with the same result.
 #include <polybody/fe_matrices.hpp>
 
 #include "fuzz/lines.hpp"
@@ -20,7 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
       },
       [&](std::string const& message) { return message.starts_with(file + ", line "); });
   if (!nodes) return 0;
-  require(!nodes->labels.empty() && nodes->labels.size() == nodes->positions.size(), "each node has label and position");
+  require(!nodes->labels.empty() && nodes->labels.size() == nodes->positions.size(),
+          "each node has label and position");
   std::string again = "*NODE\n";
   for (std::size_t i = 0; i < nodes->labels.size(); ++i) {
     Vec3 const& r = nodes->positions[i];

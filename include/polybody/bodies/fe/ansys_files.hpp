@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Nodes and matrices of Ansys: NBLOCK of a .cdb file or the output of NLIST, and the Harwell–Boeing file with its
-/// mapping file of HBMAT [Ansys Mechanical APDL Command Reference, HBMAT; Duff, Grimes & Lewis 1992, Users' guide for
+/// mapping file of HBMAT [Ansys Mechanical APDL Command Reference, HBMAT; Users' guide for
 /// the Harwell–Boeing sparse matrix collection]. The formats agree with the samples
 /// tests/Verification/ANSYS_rst/STIFF_ANSYS.HB and .mapping of fjramireg/StiffMa.
 

@@ -108,7 +108,7 @@ Vec3 grid_position(FeText const& text, NastranCard const& card) {
   return r;
 }
 
-/// Whether the header of a DMIG matrix declares it symmetric.
+/// Form of a DMIG matrix in its header: true for a symmetric matrix.
 template <class = void>
 bool dmig_symmetric(FeText const& text, NastranCard const& card) {
   std::string const &form = card.at(2), &type = card.at(3);
