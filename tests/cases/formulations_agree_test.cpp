@@ -7,6 +7,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/joints.hpp>
@@ -49,6 +50,7 @@ std::string const name_of = std::same_as<B, AncfCable<>>             ? "AncfCabl
                             : std::same_as<B, AncfBeam<ElasticLine>> ? "AncfBeam"
                             : std::same_as<B, AncfBeam<Continuum<>>> ? "AncfBeam<Continuum>"
                             : std::same_as<B, Lrvf<>>                ? "Lrvf"
+                            : std::same_as<B, Se3Beam>               ? "Se3Beam"
                             : std::same_as<B, Ffr>                   ? "Ffr"
                                                                      : "planar Ffr";
 Claim spectral(char const* case_id, std::string const& formulation) {
@@ -57,7 +59,8 @@ Claim spectral(char const* case_id, std::string const& formulation) {
 
 template <class B>
 struct EveryFormulation : testing::Test {};
-using All = testing::Types<AncfCable<>, AncfBeam<ElasticLine>, AncfBeam<Continuum<>>, Lrvf<>, Ffr, planar::Ffr>;
+using All =
+    testing::Types<AncfCable<>, AncfBeam<ElasticLine>, AncfBeam<Continuum<>>, Lrvf<>, Se3Beam, Ffr, planar::Ffr>;
 TYPED_TEST_SUITE(EveryFormulation, All);
 
 // P L³/3EI, to 1 %; 1e-2 L at the tip. Shear adds 3EI/GAL² = 7e-4.
@@ -136,7 +139,7 @@ TYPED_TEST(EveryFormulation, FlexiblePendulumSwingsAlike) {
                 .section = Rectangle{.height = 0.02, .width = 0.02},
                 .material = Material{.density = 2500.0, .young = 3.75e8, .poisson = 0.3}};
   constexpr bool cable = std::same_as<B, AncfCable<>>, frame = std::same_as<B, Ffr> || std::same_as<B, planar::Ffr>;
-  Index const elements = cable ? 8 : frame ? 6 : std::same_as<B, Lrvf<>> ? 64 : 32;
+  Index const elements = cable ? 8 : frame ? 6 : std::same_as<B, Lrvf<>> || std::same_as<B, Se3Beam> ? 64 : 32;
   double const tolerance = frame ? 0.02 : 5e-4;
   ModelOf<B> model{Gravity{0, -9.81, 0}};
   auto const rod = model.add(B::from(bar, elements), "rod");

@@ -10,6 +10,7 @@
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/standard_joints.hpp>
 
@@ -24,7 +25,7 @@ using Ball = Joint<Spherical, Constraint>;
 using Line = AncfBeam<ElasticLine>;
 using Cured = AncfBeam<Continuum<>>;
 /// Model type for all bodies, which is compiled once.
-using Beams = Model<Bodies<Lrvf<>, Line, Cured>, Joints<Clamp, Ball>>;
+using Beams = Model<Bodies<Lrvf<>, Se3Beam, Line, Cured>, Joints<Clamp, Ball>>;
 
 enum class Ends { pinned_pinned, clamped_free, free_free };
 char const* name_of(Ends ends) {
@@ -32,9 +33,10 @@ char const* name_of(Ends ends) {
 }
 template <class B>
 std::string name_of(Index n) {
-  char const* const body = std::is_same_v<B, Lrvf<>> ? "Lrvf, "
-                           : std::is_same_v<B, Line> ? "AncfBeam, "
-                                                     : "AncfBeam<Continuum>, ";
+  char const* const body = std::is_same_v<B, Lrvf<>>    ? "Lrvf, "
+                           : std::is_same_v<B, Se3Beam> ? "Se3Beam, "
+                           : std::is_same_v<B, Line>    ? "AncfBeam, "
+                                                        : "AncfBeam<Continuum>, ";
   return body + std::to_string(n);
 }
 char const* const timoshenko = "roots of Timoshenko's characteristic equation";
@@ -120,6 +122,7 @@ void bends(Index n) {
   }
 }
 TEST(ThickBeamInSpace, LrvfConvergesToTimoshenkosFrequencies) { bends<Lrvf<>>(16); }
+TEST(ThickBeamInSpace, Se3BeamConvergesToTimoshenkosFrequencies) { bends<Se3Beam>(16); }
 TEST(ThickBeamInSpace, AncfElasticLineConvergesToTimoshenkosFrequencies) { bends<Line>(12); }
 TEST(ThickBeamInSpace, AncfContinuumConvergesToTimoshenkosFrequencies) { bends<Cured>(12); }
 
@@ -145,6 +148,7 @@ void bends_slender(Index n) {
   }
 }
 TEST(SlenderBeamInSpace, LrvfConvergesToTimoshenkosFrequencies) { bends_slender<Lrvf<>>(24); }
+TEST(SlenderBeamInSpace, Se3BeamConvergesToTimoshenkosFrequencies) { bends_slender<Se3Beam>(24); }
 TEST(SlenderBeamInSpace, AncfElasticLineConvergesToTimoshenkosFrequencies) { bends_slender<Line>(16); }
 
 // Published values of Exudyn's ANCFBeam for each mesh. Its rotary inertia is distributed over the element, here it is
@@ -184,16 +188,19 @@ double free_torsion(Index n) {
   return limit(frequencies<B>(n, Ends::free_free).single[0], frequencies<B>(2 * n, Ends::free_free).single[0]);
 }
 
-TEST(ThickBeamInSpace, LrvfTwistsAndStretches) {
-  Frequencies const c = frequencies<Lrvf<>>(16, Ends::clamped_free), f = frequencies<Lrvf<>>(32, Ends::clamped_free);
-  char const* const meshes = "Lrvf, 16 and 32 elements extrapolated";
+template <class B>
+void twists_and_stretches() {
+  Frequencies const c = frequencies<B>(16, Ends::clamped_free), f = frequencies<B>(32, Ends::clamped_free);
+  std::string const meshes = name_of<B>(16) + " and 32 elements extrapolated";
   held({"E2", "torsion of the thick beam, clamped–free [rad/s]", By::closed_form, rod, meshes},
        limit(c.single[0], f.single[0]), 0.5 * torsion, 1e-6 * torsion);
   held({"E2", "stretch of the thick beam, clamped–free [rad/s]", By::closed_form, rod, meshes},
        limit(c.single[1], f.single[1]), axial, 1e-6 * axial);
-  held({"E2", "torsion of the thick beam, free–free [rad/s]", By::closed_form, rod, meshes}, free_torsion<Lrvf<>>(16),
+  held({"E2", "torsion of the thick beam, free–free [rad/s]", By::closed_form, rod, meshes}, free_torsion<B>(16),
        torsion, 1e-6 * torsion);
 }
+TEST(ThickBeamInSpace, LrvfTwistsAndStretches) { twists_and_stretches<Lrvf<>>(); }
+TEST(ThickBeamInSpace, Se3BeamTwistsAndStretches) { twists_and_stretches<Se3Beam>(); }
 
 /// The frame of a section follows r_y, which carries Iρ. The vector r_z with its own Iρ is coupled to it by the
 /// section's shear stiffness GA. With the rod's frequency ω₀: ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA

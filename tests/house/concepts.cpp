@@ -15,6 +15,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/belt.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/differential.hpp>
 #include <polybody/forces/loads.hpp>
@@ -57,6 +58,7 @@ static_assert(Body<Lrvf<Incremental>> && PathDependentInterpolation<Incremental>
 static_assert(StrainQuadrature<ReducedQuadrature> && StrainQuadrature<FullQuadrature> &&
               StrainQuadrature<SelectiveQuadrature>);
 static_assert(Body<Rigid<>>);
+static_assert(Body<Se3Beam>);
 static_assert(Body<Rigid<EulerParameters>> && HasOwnEquations<Rigid<EulerParameters>> && !HasOwnEquations<Rigid<>>);
 static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
 static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&

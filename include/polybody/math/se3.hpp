@@ -234,7 +234,7 @@ OperatorSeries<T> tangent_inverse_series(T const& x) {
 
 /// Derivative of the operator 1 + f φ̃ + g φ̃² in the direction p: f p̃ + g (φ̃ p̃ + p̃ φ̃) + 2 φ·p (f′ φ̃ + g′ φ̃²), 3×3.
 template <class T>
-Mat<T, 3, 3> operator_slope(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Vec<T, 3> const& p) {
+Mat<T, 3, 3> map_slope(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Vec<T, 3> const& p) {
   T const along = dot(phi, p), x = squared_norm(phi);
   T const odd = 2.0 * along * c.df, even = 2.0 * along * c.dg;
   Mat<T, 3, 3> m;
@@ -250,14 +250,14 @@ Mat<T, 3, 3> operator_slope(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Ve
 }
 /// Operator on screws whose diagonal blocks are 1 + f φ̃ + g φ̃², at d = (p, φ).
 template <class T>
-ScrewMap<T> screw_operator(OperatorSeries<T> const& c, ScrewVector<T> const& d) {
-  return {one_and_skew<T>(d.rotation, c.f, c.g), operator_slope(c, d.rotation, d.translation)};
+ScrewMap<T> screw_map(OperatorSeries<T> const& c, ScrewVector<T> const& d) {
+  return {one_and_skew<T>(d.rotation, c.f, c.g), map_slope(c, d.rotation, d.translation)};
 }
 
 /// Derivative D₀(φ, y) = ∂((1 + f φ̃ + g φ̃²) y)/∂φ at constant y, 3×3:
 ///   2 (f′ φ × y + g′ φ × (φ × y)) φᵀ − f ỹ − g ((φ × y)~ + φ̃ ỹ).
 template <class T>
-Mat<T, 3, 3> operator_derivative(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Vec<T, 3> const& y) {
+Mat<T, 3, 3> map_derivative(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Vec<T, 3> const& y) {
   Vec<T, 3> const once = cross(phi, y), twice = cross(phi, once);
   Mat<T, 3, 3> const of_y = skew(y), of_once = skew(once), both = skew_of_skew(phi, y);
   Mat<T, 3, 3> d;
@@ -269,7 +269,7 @@ Mat<T, 3, 3> operator_derivative(OperatorSeries<T> const& c, Vec<T, 3> const& ph
 }
 /// Derivative of D₀(φ, y) for φ in the direction p, at constant y (3×3).
 template <class T>
-Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, Vec<T, 3> const& y) {
+Mat<T, 3, 3> map_second_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, Vec<T, 3> const& y) {
   Vec<T, 3> const &p = d.translation, &phi = d.rotation;
   T const twofold = 2.0 * dot(phi, p);
   Vec<T, 3> const once = cross(phi, y), twice = cross(phi, once), by_p = cross(p, y);
@@ -289,9 +289,9 @@ Mat<T, 3, 3> operator_second_derivative(OperatorSeries<T> const& c, ScrewVector<
 }
 /// Derivative with respect to d of the product of an operator on screws at d with the constant screw y.
 template <class T>
-ScrewMap<T> screw_operator_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, ScrewVector<T> const& y) {
-  ScrewMap<T> out{operator_derivative(c, d.rotation, y.rotation), operator_derivative(c, d.rotation, y.translation)};
-  Mat<T, 3, 3> const more = operator_second_derivative(c, d, y.rotation);
+ScrewMap<T> screw_map_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, ScrewVector<T> const& y) {
+  ScrewMap<T> out{map_derivative(c, d.rotation, y.rotation), map_derivative(c, d.rotation, y.translation)};
+  Mat<T, 3, 3> const more = map_second_derivative(c, d, y.rotation);
   for (int i = 0; i < 9; ++i) out.coupling.data()[i] += more.data()[i];
   return out;
 }
@@ -299,27 +299,27 @@ ScrewMap<T> screw_operator_derivative(OperatorSeries<T> const& c, ScrewVector<T>
 /// Tangent operator T(d) of SE(3), the right Jacobian: exp(d)⁻¹ d/dt exp(d) = T(d) ḋ.
 template <class T>
 ScrewMap<T> se3_tangent(ScrewVector<T> const& d) {
-  return screw_operator<T>(tangent_series<T>(squared_norm(d.rotation)), d);
+  return screw_map<T>(tangent_series<T>(squared_norm(d.rotation)), d);
 }
 /// Inverse tangent operator T⁻¹(d), for |φ| < 2π.
 template <class T>
 ScrewMap<T> se3_tangent_inverse(ScrewVector<T> const& d) {
-  return screw_operator<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d);
+  return screw_map<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d);
 }
 /// Derivative ∂(T(d) y)/∂d at constant y.
 template <class T>
 ScrewMap<T> se3_tangent_derivative(ScrewVector<T> const& d, ScrewVector<T> const& y) {
-  return screw_operator_derivative<T>(tangent_series<T>(squared_norm(d.rotation)), d, y);
+  return screw_map_derivative<T>(tangent_series<T>(squared_norm(d.rotation)), d, y);
 }
 /// Derivative ∂(T⁻¹(d) y)/∂d at constant y.
 template <class T>
 ScrewMap<T> se3_tangent_inverse_derivative(ScrewVector<T> const& d, ScrewVector<T> const& y) {
-  return screw_operator_derivative<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d, y);
+  return screw_map_derivative<T>(tangent_inverse_series<T>(squared_norm(d.rotation)), d, y);
 }
 /// Adjoint map Ad(exp(d)) = [A, r̃ A; 0, A] of screws, for the motion (A, r) = exp(d).
 template <class T>
 ScrewMap<T> se3_adjoint(ScrewVector<T> const& d) {
-  return screw_operator<T>(exp_series<T>(squared_norm(d.rotation)), d);
+  return screw_map<T>(exp_series<T>(squared_norm(d.rotation)), d);
 }
 
 /// Rigid motion H = (A, r).

@@ -15,6 +15,7 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 
 namespace polybody {
 namespace {
@@ -86,6 +87,7 @@ TEST(Heap, SpatialLrvfTakesNone) {
   expect_no_heap(Lrvf<Directors>::from(bar, 3));
   expect_no_heap(Lrvf<RelativeRotation, SelectiveQuadrature>::from(bar, 3));
 }
+TEST(Heap, Se3BeamTakesNone) { expect_no_heap(Se3Beam::from(bar, 3)); }
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }
 TEST(Heap, EngineeringCableTakesNone) { expect_no_heap(planar::AncfCable<planar::EngineeringStrain>::from(bar, 3)); }

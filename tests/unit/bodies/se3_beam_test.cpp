@@ -124,6 +124,27 @@ TEST(Se3Beam, StraightBeamHasTheInertiaOfTheRod) {
   }
 }
 
+// For small motions of the straight beam, stiffness, damping and mass are those of Lrvf with reduced quadrature. Bent
+// beams differ.
+TEST(Se3Beam, StraightBeamIsThatOfLrvfForSmallMotions) {
+  Se3Beam const beam = Se3Beam::from(spatial_lrvf_bar(), 3);
+  Lrvf<> const other = Lrvf<>::from(spatial_lrvf_bar(), 3);
+  VecX const q = reference_of(beam), rest = VecX::Zero(beam.velocities());
+  Mat<double, 12, 12> a, b;
+  for (auto const& [ck, cd] : {std::pair(1.0, 0.0), std::pair(0.0, 1.0)}) {
+    beam.tangent(1, numbers(q), numbers(rest), ck, cd, a);
+    other.tangent(1, numbers(q), numbers(rest), ck, cd, b);
+    EXPECT_LT((a - b).norm(), 1e-13 * b.norm());
+  }
+  beam.mass(1, numbers(q), a);
+  other.mass(1, numbers(q), b);
+  EXPECT_EQ(a, b);
+  VecX const bent = nodes_of(3, [&](double i) { return helix(six(0, 0, 0, 0.9, 0.3, -1.6), length / 3 * i); });
+  beam.tangent(1, numbers(bent), numbers(rest), 1.0, 0.0, a);
+  other.tangent(1, numbers(bent), numbers(rest), 1.0, 0.0, b);
+  EXPECT_GT((a - b).norm(), 0.02 * b.norm());
+}
+
 TEST(Se3Beam, PretensionPullsTheEndsAndStoresItsWork) {
   Bar bar = straight_bar();
   bar.pretension = 70.0;

@@ -75,21 +75,21 @@ class FrameChain {
   template <class T>  // compiled only if used
   void mass(Index, std::span<double const>, Mat<T, 12, 12>& m) const {
     m.setZero();
-    for (int i = 0; i < 3; ++i) {
-      m(i, i) = m(6 + i, 6 + i) = 2.0 * sixth_;
-      m(i, 6 + i) = m(6 + i, i) = sixth_;
-      m(3 + i, 3 + i) = m(9 + i, 9 + i) = rotary_[i];
-    }
+    for (int node : {0, 6})
+      for (int i = 0; i < 3; ++i) {
+        m(node + i, node + i) = 2.0 * sixth_;
+        m(node + i, 6 - node + i) = sixth_;
+        m(node + 3 + i, node + 3 + i) = rotary_[i];
+      }
   }
   template <StateScalar T>
   void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
     T const* const x = a.data() + 6 * e;
-    for (int i = 0; i < 3; ++i) {
-      out[i] = (2.0 * x[i] + x[6 + i]) * sixth_;
-      out[6 + i] = (x[i] + 2.0 * x[6 + i]) * sixth_;
-      out[3 + i] = x[3 + i] * rotary_[i];
-      out[9 + i] = x[9 + i] * rotary_[i];
-    }
+    for (int node : {0, 6})
+      for (int i = 0; i < 3; ++i) {
+        out[node + i] = (2.0 * x[node + i] + x[6 - node + i]) * sixth_;
+        out[node + 3 + i] = x[node + 3 + i] * rotary_[i];
+      }
   }
   template <StateScalar T>
   void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {

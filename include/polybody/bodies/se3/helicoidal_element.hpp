@@ -85,7 +85,7 @@ struct HelicoidalElement {
     series = tangent_inverse_series<T>(squared_norm(d.rotation));
     inverse.diagonal = one_and_skew<T>(d.rotation, series.f, series.g);
     d.translation = transposed_product<T>(inverse.diagonal, chord);
-    inverse.coupling = operator_slope<T>(series, d.rotation, d.translation);
+    inverse.coupling = map_slope<T>(series, d.rotation, d.translation);
   }
 
   /// Velocities of the nodes with the first generalised velocity `first` of v.
@@ -144,8 +144,8 @@ struct HelicoidalElement {
                Mat<T, 12, 12>& k) const {
     Mat<T, 6, 9> const b = nodal_map();
     Mat<T, 6, 9> const stress = stress_slope(section, b, v, ck, cd);
-    ScrewMap<T> const forward = screw_operator_derivative<T>(series, d, {m, n}),
-                      backward = screw_operator_derivative<T>(series, opposite(d), {m, n});
+    ScrewMap<T> const forward = screw_map_derivative<T>(series, d, {m, n}),
+                      backward = screw_map_derivative<T>(series, opposite(d), {m, n});
     Vec<T, 3> const pull = product(inverse.diagonal, n);
     Mat<T, 3, 3> const carried = skew<T>(pull);
     Mat<T, 9, 9> local;
@@ -194,9 +194,9 @@ struct HelicoidalElement {
       for (int i = 0; i < 6; ++i) out(i, c) = b(i, c) * (section.spring(i) * (ck + cd * section.time(i)));
     if (!section.damped() || ck == 0.0) return out;
     Vec<T, 3> const none = detail::zeros<Vec<T, 3>>();
-    ScrewMap<T> of_d = sum<T>(screw_operator_derivative<T>(series, d, {none, v.w2}),
-                              screw_operator_derivative<T>(series, opposite(d), {none, v.w1}));
-    Mat<T, 3, 3> const by_apart = operator_derivative<T>(series, scaled<T>(d.rotation, -1.0), v.apart),
+    ScrewMap<T> of_d = sum<T>(screw_map_derivative<T>(series, d, {none, v.w2}),
+                              screw_map_derivative<T>(series, opposite(d), {none, v.w1}));
+    Mat<T, 3, 3> const by_apart = map_derivative<T>(series, scaled<T>(d.rotation, -1.0), v.apart),
                        swept = transposed_product<T>(inverse.diagonal, skew<T>(v.apart));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) of_d.coupling(i, j) -= by_apart(i, j);

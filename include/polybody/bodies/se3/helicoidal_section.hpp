@@ -100,8 +100,8 @@ struct HelicoidalPoint {
     R = product(R1, relative.A);
     r = product(R1, relative.r);
     for (int i = 0; i < 3; ++i) r[i] += r1[i];
-    tangent = screw_operator<T>(tangent_series<T>(x), part);
-    carry = screw_operator<T>(exp_series<T>(x), opposite(part));
+    tangent = screw_map<T>(tangent_series<T>(x), part);
+    carry = screw_map<T>(exp_series<T>(x), opposite(part));
     P1 = sum(carry, scaled(product(tangent, blockwise_transposed(inverse)), -xi));
     P2 = scaled(product(tangent, inverse), xi);
   }

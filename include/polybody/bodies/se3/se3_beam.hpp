@@ -205,13 +205,13 @@ class Se3Beam : public FrameChain {
       throw InvalidInput("reference_curve.arc_length",
                          {ErrorObject{"Se3Beam"}, ": element ", double(e), ", counted from 0, of arc length ", l,
                           " m connects two sections by a helical arc of ", ErrorValue{size},
-                          " m, but this arc must be longer than zero and no longer than the element. The argument of "
-                          "the reference curve must be its arc length. Use more elements on a closed curve."});
+                          " m. This length must be positive and at most that of the element. The argument of the "
+                          "reference curve must be its arc length. Use more elements on a closed curve."});
     Mat<T, 3, 3> const between = product(element.R, exp_so3<T>(scaled<T>(d.rotation, 0.5)));
     T trace = 0.0;  // 1 + 2 cos of the angle between both middles
     for (int i = 0; i < 9; ++i) trace += between.data()[i] * middle.data()[i];
     if (trace < 1.0)
-      throw InvalidInput("reference_curve.rotation",
+      throw InvalidInput("reference_curve.element",
                          {ErrorObject{"Se3Beam"}, ": the sections of element ", double(e),
                           ", counted from 0, rotate by half a turn or more along the reference curve: the rotation in "
                           "the middle differs by ",
