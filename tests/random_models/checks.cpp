@@ -207,7 +207,7 @@ class Examination {
   /// Wrenches from the ground and from loads on all bodies: reactions and loads as recorded.
   Total from_outside(System& s, State const& x) {
     s.evaluate(x.q, x.v, x.t);
-    s.push_forces();
+    s.push_forces(x.lambda);
     Total total;
     ModelLayout const& layout = s.layout();
     auto const owner = [&](Index marker) { return layout.owners[std::size_t(marker)]; };
