@@ -105,7 +105,7 @@ struct Arm {
         friction(model.apply(force, hinge, "friction")) {}
   State spinning(double omega) const {
     State x = model.reference_state();
-    model.set_velocity(x, body, Vec3(0, -omega, 0).cross(position(model, x, body.at(Vec3(0, 0, 0)))), {0, -omega, 0});
+    model.set_velocity(x, body, {0, 0, 0}, {0, -omega, 0});
     return x;
   }
   double rate(State const& x) const { return -frame(model, x, body.at(Vec3(0, 0, 0))).w.y(); }
@@ -201,7 +201,7 @@ TEST(StickingBearingFriction, HoldsAnArmUpToTheLimit) {
     Arm<Hinge, StickingBearingFriction<Hinge>> const arm(about_y, sticking_bearing<Hinge>(0.5), Gravity{0, 0, -9.81},
                                                          angle);
     State x = arm.model.reference_state();
-    arm.model.states(x, arm.friction)[0] = -share * 0.5 * 0.1 * 2.0 * 9.81 / 1e3;  // the bristle bears the arm
+    arm.model.states(x, arm.friction)[0] = share * 0.5 * 0.1 * 2.0 * 9.81 / 1e3;  // the bristle bears the arm
     compute_accelerations(arm.model, x);
     if (share > 1.0) {
       EXPECT_GT(largest_size(x.a.head(6)), 0.1);
