@@ -14,9 +14,13 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
+#include <polybody/forces/belt.hpp>
 #include <polybody/forces/contact.hpp>
+#include <polybody/forces/differential.hpp>
 #include <polybody/forces/loads.hpp>
+#include <polybody/forces/motors.hpp>
 #include <polybody/forces/normal_force.hpp>
+#include <polybody/forces/servo.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
@@ -54,6 +58,10 @@ static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
 static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&
               HasPotential<Contact<SphereOnSphere>>);
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
+static_assert(ForceElement<BeltAndPulley<2>> && HasStates<BeltAndPulley<2>>);
+static_assert(ForceElement<Differential> && HasStatePotential<Differential>);
+static_assert(ScalarLaw<Servo<>> && ScalarLaw<PidServo<>> && ScalarLaw<RateLimited<PidServo<>>>);
+static_assert(ScalarLaw<DcMotor<>> && ScalarLaw<TorqueSpeedCurve<>>);
 static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);
 static_assert(ForceElement<SpringDamper> && HasPotential<SpringDamper>);
 static_assert(JointGeometry<Cylindrical>);

@@ -126,6 +126,9 @@ struct FunctionSpring {
     return function.potential(x);  ///< energy of the function [J]
   }
 };
+/// Type of `FunctionSpring{function}`.
+template <class F>
+FunctionSpring(F) -> FunctionSpring<F>;
 
 /// Rope that only pulls: tension N = max(0, k (x − L) + c ẋ) for x > L, zero otherwise; Q = −N.
 struct Rope {

@@ -4,6 +4,8 @@
 /// restitution.
 
 #include <memory>
+#include <numbers>
+#include <string_view>
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/joint_position.hpp>
@@ -25,6 +27,11 @@ struct LimitImpact {
                                          "\": the lower limit must be less than the upper limit, and one of them "
                                          "finite, but they are ",
                                          ErrorValue{lower}, " and ", upper, " ", unit, "."});
+    for (double const limit : {lower, upper})
+      if (std::string_view(unit) == "rad" && std::isfinite(limit) && !(std::abs(limit) < std::numbers::pi))
+        throw InvalidInput("limit.beyond_half_a_turn",
+                           {"\"", ErrorObject{name}, "\": a limit of an angle must lie between -pi and pi, but is ",
+                            ErrorValue{limit}, " rad."});
     if (!(restitution >= 0.0 && restitution <= 1.0))
       throw InvalidInput("limit.restitution",
                          {"\"", ErrorObject{name}, "\": the coefficient of restitution must lie in [0, 1], but is ",
@@ -67,9 +74,9 @@ class ImpactOfJoint {
     forward_.response(system_, along, move, reactions);
     double const mobility = along.dot(move);
     if (!(mobility > 1e-12 * along.norm() * move.norm()))
-      throw InvalidInput("limit.immobile",
-                         {"joint \"", ErrorObject{place.name}, "\" cannot rebound from its limit at t = ",
-                          ErrorTime{x.t}, " s: other joints prescribe or prevent its motion."});
+      throw InvalidInput("limit.immobile", {"joint \"", ErrorObject{place.name},
+                                            "\" cannot rebound from its limit at t = ", ErrorTime{x.t},
+                                            " s: other joints prescribe or prevent its motion."});
     x.v -= (1.0 + limit_.restitution) * at.rate / mobility * move;
   }
 
@@ -102,7 +109,7 @@ class ImpactOfJoint {
 /// Event of a run: impact at a limit of a joint's angle or translation. The rate of the coordinate jumps from ẋ to −e
 /// ẋ. The jump of all velocities is due to an impulse between the two bodies of the joint. It satisfies the constraint
 /// equations and conserves the momentum of free bodies. If impacts accumulate, the joint rests at the limit until the
-/// motion leaves it. An angle without limit on one side must not exceed half a turn. The model must outlive the event
+/// motion leaves it. The angle must stay within (−π, π). The model must outlive the event
 /// and must not change afterwards.
 /// \throws InvalidInput for invalid limits and for a handle of another model.
 template <class M, class J>

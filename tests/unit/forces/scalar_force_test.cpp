@@ -129,8 +129,7 @@ void oscillates_over_several_turns(Policy const& policy = {}) {
   disc.model.set_velocity(x, disc.body, Vec3::Zero(), Vec3(0, 0, 20.0));
   TurnCounter turns(disc.model, disc.pin);
   double most = 0.0, off = 0.0;
-  for (State const& now :
-       simulate(disc.model, x, GeneralisedAlpha{.rho_inf = 1.0}, {.end_time = 3.2, .step = 1e-3})) {
+  for (State const& now : simulate(disc.model, x, GeneralisedAlpha{.rho_inf = 1.0}, {.end_time = 3.2, .step = 1e-3})) {
     double const angle = turns.record(now);
     most = std::max(most, std::abs(angle));
     off = std::max(off, std::abs(angle - 10.0 * std::sin(2.0 * now.t)));
