@@ -15,12 +15,15 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/belt.hpp>
+#include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/differential.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/forces/motors.hpp>
 #include <polybody/forces/normal_force.hpp>
+#include <polybody/forces/reaction_friction.hpp>
 #include <polybody/forces/servo.hpp>
+#include <polybody/forces/spherical_friction.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
@@ -57,6 +60,11 @@ static_assert(Body<Rigid<EulerParameters>> && HasOwnEquations<Rigid<EulerParamet
 static_assert(ForceElement<AxialSpring> && HasPotential<AxialSpring>);
 static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<SphereOnPlane>> &&
               HasPotential<Contact<SphereOnSphere>>);
+static_assert(HasStatePotential<Contact<SphereOnPlane, SpringDamperContact, BristleFriction>>);
+static_assert(ScalarLaw<DryFriction> && ScalarLaw<LuGreFriction>);
+static_assert(ForceElement<SphericalFriction> && HasStatePotential<SphericalBristleFriction>);
+static_assert(FollowsReaction<BearingFriction<Joint<Revolute, Constraint>>> &&
+              !FollowsReaction<BearingFriction<Joint<Revolute, Penalty>>>);
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
 static_assert(ForceElement<BeltAndPulley<2>> && HasStates<BeltAndPulley<2>>);
 static_assert(ForceElement<Differential> && HasStatePotential<Differential>);
