@@ -4,17 +4,23 @@
 /// differentials).
 /// Ready parts of mechanisms: springs on joints, limits and impacts at limits, contact shapes.
 /// Ready parts of mechanisms: springs on joints, limits and impacts at limits, tyre laws and wheels.
+/// Ready parts of mechanisms: springs on joints, limits, impacts at limits, friction of contacts and joints, and drives
+/// (servos, motors, belts, differentials).
 
 #include <polybody/forces/belt.hpp>
+#include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/differential.hpp>
+#include <polybody/forces/friction_laws.hpp>
 #include <polybody/forces/limits.hpp>
 #include <polybody/forces/motors.hpp>
+#include <polybody/forces/reaction_friction.hpp>
 #include <polybody/forces/scalar_force.hpp>
 #include <polybody/forces/servo.hpp>
 #include <polybody/forces/shapes/box_contact.hpp>
 #include <polybody/forces/shapes/capsule_contact.hpp>
 #include <polybody/forces/shapes/compound.hpp>
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
+#include <polybody/forces/spherical_friction.hpp>
 #include <polybody/forces/spring_laws.hpp>
 #include <polybody/run/belt_spans.hpp>
 #include <polybody/forces/tyre.hpp>

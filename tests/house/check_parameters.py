@@ -15,6 +15,7 @@ NOTHING_TO_TRY = {
     "NoCorrection": "it has no parameters",
     "SymplecticEuler": "it has no parameters",
     "AtStates": "it has no parameters",
+    "AtMultipliers": "it has no parameters",
     "UserForce": "its law is a function",
     "UserForceWithStates": "its law is a function",
     "ContactGroup": "it calls the checks of its laws",

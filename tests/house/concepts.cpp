@@ -16,16 +16,19 @@
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/belt.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
+#include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/differential.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/forces/motors.hpp>
 #include <polybody/forces/normal_force.hpp>
+#include <polybody/forces/reaction_friction.hpp>
 #include <polybody/forces/servo.hpp>
 #include <polybody/forces/shapes/box_contact.hpp>
 #include <polybody/forces/shapes/capsule_contact.hpp>
 #include <polybody/forces/shapes/compound.hpp>
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
+#include <polybody/forces/spherical_friction.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
@@ -67,6 +70,11 @@ static_assert(ContactGeometry<BoxOnPlane> && ContactGeometry<CapsuleOnPlane> && 
 static_assert(ContactGeometry<SphereOnBox> && ContactGeometry<CapsuleOnBox> && ContactGeometry<BoxOnBox>);
 static_assert(ContactGeometry<CapsuleOnSphere> && ContactGeometry<CapsuleOnCapsule>);
 static_assert(ContactGeometry<Compound<BoxOnPlane, CapsuleOnPlane>>);
+static_assert(HasStatePotential<Contact<SphereOnPlane, SpringDamperContact, BristleFriction>>);
+static_assert(ScalarLaw<DryFriction> && ScalarLaw<LuGreFriction>);
+static_assert(ForceElement<SphericalFriction> && HasStatePotential<SphericalBristleFriction>);
+static_assert(FollowsReaction<BearingFriction<Joint<Revolute, Constraint>>> &&
+              !FollowsReaction<BearingFriction<Joint<Revolute, Penalty>>>);
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
 static_assert(ForceElement<BeltAndPulley<2>> && HasStates<BeltAndPulley<2>>);
 static_assert(ForceElement<Differential> && HasStatePotential<Differential>);
