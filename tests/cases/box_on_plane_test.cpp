@@ -176,9 +176,9 @@ TEST(BoxOnPlaneCase, RocksOnItsFourCornersAtTheFrequencyOfTheClosedForm) {
 }
 
 // A block with the half width b and the half height h, with its centre at the distance R from the edge on the floor,
-// is inclined by θ₀ and falls back: θ̈ = −p² sin(α − θ), p² = m g R/(J + m R²), tan α = b/h [Housner 1963]. Time
-// from θ₀ to θ₀/10 for b = 0.05 m, h = 0.2 m, θ₀ = α/2 by quadrature of the energy integral (Simpson, 2000 intervals):
-// 0.21080178 s. The floor is stiff, and the friction holds the edge.
+// is inclined by θ₀ and falls back [Housner 1963]: θ̈ = −p² sin(α − θ) with p² = m g R/(J + m R²) and tan α = b/h. The
+// time from θ₀ to θ₀/10 for b = 0.05 m, h = 0.2 m, θ₀ = α/2 is 0.21080178 s, by quadrature of the energy integral with
+// the rule of Simpson in 400 and 2000 intervals. The floor is stiff, and the friction holds the edge.
 TEST(BoxOnPlaneCase, RocksAboutAnEdgeLikeARigidBlock) {
   double const b = 0.05, h = 0.2, alpha = std::atan2(b, h), start = 0.5 * alpha, reach = std::hypot(b, h);
   Vec3 const size(2.0 * b, 0.1, 2.0 * h);

@@ -34,7 +34,7 @@ struct ContactShapeLaws {
   G const geometry = Case::geometry();   ///< geometry under test
   Numbers number;                        ///< random numbers with a fixed seed
 
-  /// Elastic contact; with friction if `coefficient` is positive.
+  /// Contact with a friction `coefficient` and with `damping` [N s/m].
   Contacts law(double coefficient = 0.0, double damping = 0.0) const {
     return {.geometry = geometry,
             .normal = {.stiffness = 900.0, .damping = damping},
@@ -65,9 +65,6 @@ struct ContactShapeLaws {
   Touching touching(double depth) {
     return at_depth({number.frame(), number.frame()}, depth);
   }  ///< random frames and twists with the largest depth `depth` [m]
-  static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
-    return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
-  }  ///< velocity of body a relative to body b at the contact point p
 
   // --- geometry -----------------------------------------------------------------------------------------------
 

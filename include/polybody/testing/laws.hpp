@@ -2,8 +2,8 @@
 /// \file
 /// Law tests: a law is a property of many types, and each law is a test of GoogleTest. The suites in this folder test
 /// the types of the library: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`,
-/// `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. To test another type, write a case that creates an object of
-/// this type, and one line:
+/// `ContactShapeLaws`, `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. To test another type, write a case that
+/// creates an object of this type, and one line:
 ///
 ///     bool const bead_obeys = polybody::laws::obeys<BeadCase, polybody::laws::JointLaws>("Bead");
 ///

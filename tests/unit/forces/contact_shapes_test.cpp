@@ -183,6 +183,38 @@ TEST(CapsuleOnCapsule, PointsMeetAtACrossingAndPartForParallelAxes) {
   EXPECT_NEAR(parallel[1].depth, 0.02 - 0.09 * taper, 1e-5);
 }
 
+// Sum of the weights of all points, which is the stiffness relative to that of one sphere.
+TEST(BoxOnBox, PointsOfCornersAndEdgesHaveTheStatedWeights) {
+  BoxOnBox const geometry{
+      .size_a = {0.4, 0.4, 0.4}, .rounding_a = 0.05, .size_b = {1.2, 1.2, 1.2}, .rounding_b = 0.05, .taper = 1e-5};
+  auto const weight = [&](Touching const& f) {
+    double sum = 0.0;
+    geometry.for_each_point<double>(f[0], f[1], [&](auto const& p) { sum += p.handover.share; });
+    return sum;
+  };
+  EXPECT_EQ(weight(placed({0.1, 0.05, 0.799}, {0, 0, 0.3})), 4.0);  // four corners on a face
+  double const down = std::acos(1.0 / std::sqrt(3.0));              // the diagonal of a points down
+  Vec3 const about = Vec3(1, 1, 1).cross(Vec3(0, 0, -1)).normalized();
+  double const corner = 0.15 * std::sqrt(3.0) + 0.05;
+  EXPECT_EQ(weight(placed({0, 0, 0.6 + corner - 0.001}, (EIGEN_PI - down) * about)), 1.5);  // one corner of a on a face
+  // one corner of b on a face of a: the frames of both cases exchanged, with a as the larger box
+  BoxOnBox const exchanged{.size_a = geometry.size_b,
+                           .rounding_a = geometry.rounding_b,
+                           .size_b = geometry.size_a,
+                           .rounding_b = geometry.rounding_a,
+                           .taper = geometry.taper};
+  Touching f = placed({0, 0, 0.6 + corner - 0.001}, (EIGEN_PI - down) * about);
+  std::swap(f[0], f[1]);
+  double of_b = 0.0;
+  exchanged.for_each_point<double>(f[0], f[1], [&](auto const& p) { of_b += p.handover.share; });
+  EXPECT_EQ(of_b, 1.0);
+  // edge of a along y across the edge of b along x: both boxes are inclined by 45 degrees
+  double const edge_a = 0.15 * std::sqrt(2.0) + 0.05, edge_b = 0.55 * std::sqrt(2.0) + 0.05;
+  Touching crossing = placed({0, 0, edge_a + edge_b - 0.001}, {0, 0.5 * right, 0});
+  crossing[1].A = exp_so3<double>(Vec3(0.5 * right, 0, 0));
+  EXPECT_EQ(weight(crossing), 0.5);
+}
+
 // --- bad input ------------------------------------------------------------------------------------------------
 
 TEST(ContactShapes, RefuseSizesByName) {

@@ -13,9 +13,9 @@ using namespace polybody;
 
 namespace contact_shapes_gradients_test {
 
-std::vector<Parameter> const parameters{{"mass of the box [kg]", 1.0},  {"stiffness [N/m^1.5]", 2e6},
-                                        {"friction [1]", 0.3},          {"length of the box [m]", 0.1},
-                                        {"rounding of the box [m]", 0.01}, {"initial height [m]", 0.165}};
+std::vector<Parameter> const parameters{
+    {"mass of the box [kg]", 1.0},  {"stiffness [N/m^1.5]", 2e6},      {"friction [1]", 0.3},
+    {"length of the box [m]", 0.1}, {"rounding of the box [m]", 0.01}, {"initial height [m]", 0.165}};
 
 auto const fall = [](std::span<double const> p) {
   using Law = Contact<BoxOnBox, HuntCrossleyContact>;

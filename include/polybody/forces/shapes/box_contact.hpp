@@ -102,9 +102,9 @@ struct CapsuleOnBox {
 ///   U = ¼ Σ U(d of edges) + Σ U(d of corners),
 /// in which every depth d is a continuously differentiable function of the poses. So the force is continuous and
 /// conservative when a corner passes over an edge, and when faces or edges become parallel.
-/// With the stiffness k of the normal force law, a corner of a face of a that lies on a larger face has the stiffness k
-/// (4 points), and so has a corner of b. A single corner of a has up to 3/2 k (6 points), and two crossing edges have
-/// k/2 (2 points).
+/// A corner of a on a larger face has the stiffness k of the normal force law if the faces are aligned (4 points), and
+/// up to 3/2 k if it touches alone (6 points). A corner of b has the stiffness k. Two crossing edges have k/2 (2
+/// points).
 struct BoxOnBox {
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr int most_points = 32;
