@@ -3,10 +3,11 @@
 using namespace polybody;
 
 int main() {
-  using Pin = Joint<Cylindrical, Constraint>;
+  using Pin = Joint<Revolute, Constraint>;
+  using Sleeve = Joint<Cylindrical, Constraint>;
   using Cross = Joint<Universal, Constraint>;
   using Motor = Joint<PrescribedRate<Constant>, Constraint>;
-  Model<Bodies<Rigid<>>, Joints<Pin, Cross, Motor>> model;
+  Model<Bodies<Rigid<>>, Joints<Pin, Sleeve, Cross, Motor>> model;
   double const bend = std::acos(-1.0) / 6.0;  // 30° at each joint
   Vec3 const in(1, 0, 0), middle(std::cos(bend), std::sin(bend), 0), out(std::cos(2 * bend), std::sin(2 * bend), 0),
       z(0, 0, 1);
@@ -18,7 +19,7 @@ int main() {
   model.connect(Pin{{.axis = in}}, ground.at(-0.2 * in), first.centre(), "input bearing");
   model.connect(Motor{{.law = {{.value = 20.0}}, .axis = in}}, ground.at(-0.2 * in), first.centre(), "motor");
   auto const bearing =
-      model.connect(Pin{{.axis = out}}, ground.at(Vec3(0.5 * middle + 0.2 * out)), third.centre(), "output bearing");
+      model.connect(Sleeve{{.axis = out}}, ground.at(Vec3(0.5 * middle + 0.2 * out)), third.centre(), "output bearing");
   // The pins of the driving yoke and of the driven yoke are along z.
   model.connect(Cross{{.first = z, .second = Vec3(-middle[1], middle[0], 0)}}, first.at(Vec3(0.2 * in)),
                 second.at(Vec3(-0.25 * middle)), "cross 1");

@@ -25,7 +25,7 @@ Part part() {
           .tyre = grip,
           .relaxation = relaxation};
 }
-/// The same tyre on the plane z = 0, written by hand.
+/// Tyre force of this wheel on the plane z = 0, written by hand.
 auto by_hand() {
   auto const tyre = [](auto const& frames, auto const& u) {
     using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
@@ -50,7 +50,9 @@ auto by_hand() {
     p.sx = v.dot(p.x);
     p.sy = v.dot(p.y);
     T const slip = p.sx * p.sx + p.sy * p.sy, speed = p.vx * p.vx + slip;
-    T const fast = value_of(speed) > 0.0 ? T(speed / (speed + 1.0)) : T(0.0), bound = fast * 1.8 + 0.2;
+    T const part = (speed - 1.0) / 3.0;
+    T const fast = value_of(part) < 0.0 ? T(0.0) : value_of(part) < 1.0 ? T(part * part * (part * -2.0 + 3.0)) : T(1.0);
+    T const bound = fast * 1.8 + 0.2;
     T const straight = value_of(p.vx) < 0.0 ? T(-p.vx) : p.vx;
     T const difference = p.vx - p.sx, rolling = value_of(difference) < 0.0 ? T(-difference) : difference;
     T transport = rolling + fast * (straight - rolling);

@@ -43,8 +43,7 @@ def rates(t, y):
     load = max(0.0, K_TYRE * (R - r) - C_TYRE * (v @ n)) if r < R else 0.0
     forward = v @ e
     slip = forward - spin * r
-    parked = 1.0 / (forward**2 + slip**2 + 1.0)  # low speed of 1 m/s
-    du = -slip - ((1 - parked) * abs(forward) + parked * abs(forward - slip)) * u / SIGMA
+    du = -slip - abs(forward) * u / SIGMA
     along = C_SLIP * (u + TAU * du) / SIGMA
     along = np.clip(along, -load, load)  # friction coefficient 1
     pull = K_BODY * (zs - zu - (0.5 + M_BODY * G / K_BODY)) + C_BODY * (vs - vu)

@@ -24,7 +24,7 @@ Tyre tyre(double radius, double stiffness, double friction) {
                    .cornering_stiffness = stiffness,
                    .longitudinal_friction = friction,
                    .lateral_friction = friction},
-          .relaxation = {.longitudinal = 0.2, .lateral = 0.2, .low_speed = 1e-3}};
+          .relaxation = {.longitudinal = 0.2, .lateral = 0.2}};
 }
 
 // A wheel in the plane slides at first and rolls at last. J ω + m r v is constant, so that v = m r² v₀/(m r² + J) = ω
@@ -80,11 +80,11 @@ TEST(Tyre, BrakingDistanceOfALockedWheel) {
   LockedWheel car({0, 0, -g}, tyre(0.3, c, friction), m);
   car.model.set_velocity(car.x, car.wheel, Vec3(v0, 0, 0), Vec3::Zero());
   double farthest = 0.0;
-  for (State const& now : simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 1.5, .step = 1e-3}))
+  for (State const& now : simulate(car.model, car.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 1.5, .step = 1e-4}))
     farthest = std::max(farthest, car.position(now)[0]);
   double const x1 = -sigma * std::log(1.0 - most / c), first = c * (x1 - sigma * (1.0 - std::exp(-x1 / sigma)));
   held({"Wheel", "braking distance of a locked wheel [m]", By::closed_form,
-        "½ m v² = C (x₁ − σ (1 − e^{−x₁/σ})) + μ m g (x − x₁)", "Rigid, h = 1e-3 s"},
+        "½ m v² = C (x₁ − σ (1 − e^{−x₁/σ})) + μ m g (x − x₁)", "Rigid, h = 1e-4 s"},
        farthest, x1 + (0.5 * m * v0 * v0 - first) / most, 2e-5);
 }
 
@@ -95,7 +95,6 @@ TEST(Tyre, ParkedWheelRestsOnASlope) {
   Tyre law = tyre(0.3, c, 0.8);
   law.normal.damping = 2e3;
   law.relaxation.damping_time = 0.02;
-  law.relaxation.low_speed = 1.0;
   LockedWheel car({0.8 * pull, -0.6 * pull, -g * std::cos(alpha)}, law, m);
   Vec3 settled = Vec3::Zero();
   double moved = 0.0;
@@ -127,7 +126,6 @@ TEST(Tyre, ParkedWheelDoesNotCreepUnderAnOscillatingForce) {
   Tyre law = tyre(0.3, 5e4, 0.8);
   law.normal.damping = 2e3;
   law.relaxation.damping_time = 0.02;
-  law.relaxation.low_speed = 1.0;
   double const low = 0.3 - m * g / 2e5;
   auto const wheel = model.add(Rigid<>(m, Mat3::Identity(), Placement::at({0, 0, low})), "wheel");
   model.connect(Locked{}, model.ground().at({0, 0, low}), wheel.at({0, 0, 0}), "brake");

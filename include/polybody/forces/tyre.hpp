@@ -93,7 +93,7 @@ struct MagicCurve {
     T const b = x * B.value;
     return sin(atan(b - (b - atan(b)) * E) * C.value) * D.value;
   }
-  /// Ratio y(x)/x as a function of x², with the limit B C D at zero.
+  /// Ratio y(x)/x as a function of `x2` = x², with the limit B C D at zero.
   template <StateScalar T>
   T secant_slope(T const& x2) const {
     using std::sqrt;

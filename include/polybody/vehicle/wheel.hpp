@@ -12,12 +12,12 @@ namespace polybody {
 /// Relaxation of a tyre: the deflection u of its contact patch follows the slip velocity V_s over a relaxation length
 /// σ,
 ///   u̇ = −V_s − V_t u/σ,
-/// and the tyre law applies at the slip u/σ [Pacejka 2012, §7.2]. V_t is |V_x|, so that u/σ is the slip −V_s/|V_x| in
-/// steady motion. At low speed, V_t is the rolling speed |V_x − V_sx|, which is zero for a locked wheel. A parked wheel
-/// is then a spring with the stiffness C/σ and does not creep, also under oscillating loads:
-///   V_t = (1 − p) |V_x| + p |V_x − V_sx|,  p = V₀²/(V² + V₀²),  V² = V_x² + V_s².
-/// Near a bound S of the slip |u/σ|, V_t also contains |V_s| gate/S, and the gate increases from 0 at 0.9 S to 1 at S.
-/// The bound S = 2 (1 − p) + p S₀ avoids deflections that no tyre has. It is S₀ at standstill and 2 at high speed.
+/// and the tyre law applies at the slip u/σ [Pacejka 2012, §7.2]. With V² = V_x² + V_s², V_t is |V_x| for V ≥ 2V₀, so
+/// that u/σ is the slip −V_s/|V_x| in steady motion. For V ≤ V₀, V_t is the rolling speed |V_x − V_sx|, which is zero
+/// for a locked wheel. A parked wheel is then a spring with the stiffness C/σ and does not creep, also under
+/// oscillating loads. Between both, a smooth weight p(V²) gives V_t = p |V_x| + (1 − p) |V_x − V_sx|. Near a bound S of
+/// the slip |u/σ|, V_t also contains |V_s| gate/S, and the gate increases from 0 at 0.9 S to 1 at S. The bound S = 2 p
+/// + (1 − p) S₀ avoids deflections that no tyre has. It is S₀ at low speed and 2 at high speed.
 struct TyreRelaxation {
   Required<double> longitudinal;  ///< relaxation length σ_x [m]
   Required<double> lateral;       ///< relaxation length σ_y [m]
@@ -43,14 +43,12 @@ struct TyreRelaxation {
     using std::sqrt;
     T const along = u[0] / longitudinal.value, across = u[1] / lateral.value;
     T const slipping = sx * sx + sy * sy, speed = vx * vx + slipping, slip = along * along + across * across;
-    T const fast = value_of(speed) > 0.0 ? T(speed / (speed + low_speed * low_speed)) : T(0.0);
+    T const part = (speed / low_speed / low_speed - 1.0) / 3.0;
+    T const fast = value_of(part) > 0.0 ? rise<T>(part) : T(0.0);
     T const bound = fast * (2.0 - parked_slip) + parked_slip, rolling = magnitude<T>(vx - sx);
     T transport = rolling + fast * (magnitude<T>(vx) - rolling);
-    if (value_of(slip) > 0.81 * value_of(bound) * value_of(bound) && value_of(slipping) > 0.0) {
-      T const part = sqrt(slip) / bound * 10.0 - 9.0;
-      T const gate = value_of(part) < 1.0 ? T(part * part * (part * -2.0 + 3.0)) : T(1.0);
-      transport += gate * sqrt(slipping) / bound;
-    }
+    if (value_of(slip) > 0.81 * value_of(bound) * value_of(bound) && value_of(slipping) > 0.0)
+      transport += rise<T>(sqrt(slip) / bound * 10.0 - 9.0) * sqrt(slipping) / bound;
     return {-sx - transport * along, -sy - transport * across};
   }
 
@@ -58,6 +56,11 @@ struct TyreRelaxation {
   template <StateScalar T>
   static T magnitude(T const& x) {
     return value_of(x) < 0.0 ? T(-x) : x;
+  }
+  /// Smooth step from 0 at x = 0 to 1 at x = 1 for x ≥ 0.
+  template <StateScalar T>
+  static T rise(T const& x) {
+    return value_of(x) < 1.0 ? T(x * x * (x * -2.0 + 3.0)) : T(1.0);
   }
 };
 
@@ -126,7 +129,7 @@ struct Wheel {
     terrain.check(name);
   }
 
-  /// Contact at the frames of wheel and ground, also for a wheel in the air.
+  /// Contact at the frames `f` of wheel and ground, also for a wheel in the air.
   template <StateScalar T>
   WheelContact<T> contact(std::array<Frame<T>, 2> const& f) const {
     Vec<T, 3> axis = Vec<T, 3>::Zero();  // axle, world axes
@@ -153,6 +156,7 @@ struct Wheel {
             value_of(c.depth) > 0.0 ? T(normal.template force<T>(c.depth, c.depth_rate)) : T(0.0)};
   }
 
+  /// Wrenches on wheel and ground at their frames `f`, for the deflections `u` [m].
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, std::array<T, 2> const& u, double) const {
     using std::sqrt;
@@ -178,18 +182,19 @@ struct Wheel {
     w[1].m = -(f[1].A * of_b);
     return w;
   }
+  /// Rates u̇ [m/s] of the deflections `u` [m] at the frames `f` of wheel and ground.
   template <StateScalar T>
   std::array<T, 2> rates(std::array<Frame<T>, 2> const& f, std::array<T, 2> const& u, double) const {
     WheelContact<T> const c = contact<T>(f);
     return relaxation.template rates<T>(u, c.forward_speed, c.slip_x, c.slip_y);
   }
-  /// Energy of the radial deflection [J].
+  /// Energy of the radial deflection at the frames `f` of wheel and ground [J].
   double potential(std::array<Frame<double>, 2> const& f, std::array<double, 2> const&, double) const {
     double const d = contact<double>(f).depth;
     return d > 0.0 ? normal.template potential<double>(d) : 0.0;
   }
-  /// Power that the tyre forces of the deflections u take out [W]. While the deflections decrease, the power may be
-  /// negative.
+  /// Power that the tyre forces of the deflections `u` [m] take out at the frames `f` of wheel and ground [W]. While
+  /// the deflections decrease, the power may be negative.
   double dissipation(std::array<Frame<double>, 2> const& f, std::array<double, 2> const& u, double t) const {
     auto at_rest = f;
     for (Frame<double>& x : at_rest) x.v = x.w = Vec3::Zero();
