@@ -49,11 +49,12 @@ void add_gradient(L const& law, std::array<Index, L::markers> const& at, Gradien
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
 }
 
-/// Overload for a force element with wrenches w and first-order states z, ż = h. With the poses p of the markers, it
+/// Version for a force element with wrenches w and first-order states z, ż = h. With the poses p of the markers, it
 /// adds the blocks −Jᵀ ∂w/∂p J, −Jᵀ ∂w/∂z, −∂h/∂p J and cm − ∂h/∂z, each with its coefficient.
 /// \param law the force element of the entry, or its adapter for constant multipliers
 template <HasStates F, HasStates L>
-void add_gradient(ForceEntry<F> const& e, L const& law, GradientAt const& x, Data<double>& data, BlockSink& sink) {
+void add_gradient_with_states(ForceEntry<F> const& e, L const& law, GradientAt const& x, Data<double>& data,
+                              BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
   auto const frames = frames_at(e.markers, data);
   auto const z = states_in(e, data);

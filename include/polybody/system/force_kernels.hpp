@@ -312,7 +312,7 @@ void ForceKernels<F, T>::tangents(Pool const& pool, double t, double load_factor
     if constexpr (!ForceGroup<F>) {
       detail::with_law(e, data.multipliers.data(), [&](auto const& law) {
         if constexpr (HasStates<F>)
-          detail::add_gradient(e, law, x, data, sink);
+          detail::add_gradient_with_states(e, law, x, data, sink);
         else
           detail::add_gradient(law, e.markers, x, data, sink);
       });
