@@ -179,8 +179,8 @@ FeNodes read_ansys_nodes(std::string const& file) {
   return nodes.sorted(text, "NBLOCK and no table NODE X Y Z");
 }
 
-/// Matrix of a text file that HBMAT of Ansys writes in Harwell–Boeing format, with its mapping file, which names the
-/// node and the displacement of each equation.
+/// Matrix of a text file that HBMAT of Ansys writes in Harwell–Boeing format, with its `mapping_file`, which names
+/// the node and the displacement of each equation.
 /// \throws IoError, with the line, for other content, such as a matrix without values or with other unknowns.
 template <class = void>
 FeMatrix read_ansys_matrix(std::string const& file, std::string const& mapping_file, FeNodes const& nodes) {

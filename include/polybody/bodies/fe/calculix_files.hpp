@@ -66,8 +66,8 @@ FeNodes read_calculix_nodes(std::string const& file) {
   return detail::trimmed(line).starts_with("1C") ? detail::read_frd_nodes(text) : read_abaqus_nodes(file);
 }
 
-/// Matrix of a .sti or .mas file of CalculiX, with lines row, column, value of the upper triangle. The .dof file names
-/// node and component of each row.
+/// Matrix of a .sti or .mas file of CalculiX, with lines row, column, value of the upper triangle. `dof_file`, the .dof
+/// file, names node and component of each row.
 /// \throws IoError, with the line, for other content.
 template <class = void>
 FeMatrix read_calculix_matrix(std::string const& file, std::string const& dof_file, FeNodes const& nodes) {

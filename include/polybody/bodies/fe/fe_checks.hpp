@@ -12,7 +12,7 @@ namespace polybody {
 /// Limits of `check_matrices`.
 struct FeLimits {
   double asymmetry = 1e-9;      ///< largest difference of mirrored entries, relative to the largest entry (1)
-  double rigid_force = 1e-6;    ///< largest ‖K φ‖/(‖K‖ ‖φ‖) of a rigid motion φ (1)
+  double rigid_force = 1e-6;    ///< largest relative force ‖K φ‖/(‖K‖ ‖φ‖) of a rigid motion φ (1)
   double mass_error = 0.01;     ///< largest relative difference from the given mass (1)
   double fastest_wave = 1e5;    ///< largest speed of waves [m/s]
   double least_density = 0.01;  ///< smallest mean density of the box around the nodes [kg/m³]
