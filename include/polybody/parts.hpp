@@ -1,11 +1,7 @@
 #pragma once
 /// \file
-/// Ready parts of mechanisms: springs on joints, limits, impacts at limits, and drives (servos, motors, belts,
-/// differentials).
-/// Ready parts of mechanisms: springs on joints, limits and impacts at limits, contact shapes.
-/// Ready parts of mechanisms: springs on joints, limits and impacts at limits, tyre laws and wheels.
-/// Ready parts of mechanisms: springs on joints, limits, impacts at limits, friction of contacts and joints, and drives
-/// (servos, motors, belts, differentials).
+/// Ready parts of mechanisms: springs, stops, ropes, winches, friction, servos and motors along the coordinate of a
+/// joint, impacts at stops, belts, differentials, contact shapes, friction that sticks, tyres and wheels.
 
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/bristle_friction.hpp>
@@ -22,7 +18,7 @@
 #include <polybody/forces/shapes/shapes_on_plane.hpp>
 #include <polybody/forces/spherical_friction.hpp>
 #include <polybody/forces/spring_laws.hpp>
-#include <polybody/run/belt_spans.hpp>
 #include <polybody/forces/tyre.hpp>
+#include <polybody/run/belt_spans.hpp>
 #include <polybody/run/impact_at_limit.hpp>
 #include <polybody/vehicle/wheel.hpp>
