@@ -114,7 +114,7 @@ TriangleMesh divided(TriangleMesh const& mesh) {
   return out;
 }
 
-// Regular icosahedron of edge a: V = 5 (3 + √5) a³/12, J = m φ² a²/10 about any axis  [Satterly 1958].
+// Regular icosahedron of edge a: V = 5 (3 + √5) a³/12, J = m φ² a²/10 about any axis.
 TEST(TriangleMesh, IcosahedronHasItsClosedForm) {
   TriangleMesh const mesh = icosahedron();
   ASSERT_EQ(mesh.triangles.size(), 20u);
