@@ -59,7 +59,7 @@ TEST(MagicFormula, AgreesWithPublishedCoefficients) {
   };
   auto const check = [](char const* what, MagicCurve const& curve, std::initializer_list<Row> rows) {
     for (Row const& row : rows)
-      held({"Bakker 1987", what, By::published, "Magic Formula, coefficients of the paper at 4 kN", "MagicCurve"},
+      held({"Magic Formula", what, By::published, "Magic Formula, coefficients of the paper at 4 kN", "MagicCurve"},
            curve.value(row.x), row.value, 1e-9 * std::abs(row.value), {equals("x", row.x)});
   };
   double const f = 4.0;
