@@ -242,7 +242,8 @@ void expect_conveyed(F const& friction) {
   Model<Bodies<Rigid<>>, Joints<Drive, Guide>, Forces<OnPlane<F>>> model{Gravity{0, 0, -g}};
   auto const belt = model.add(Rigid<>(5.0, Mat3(Mat3::Identity()), Placement{}));
   auto const box = model.add(Rigid<>(2.0, Mat3(Mat3::Identity()), Placement::at({0, 0, -2.0 * g / 1e6})));
-  auto const ground = model.ground().at({0, 0, 0}), on_belt = belt.at(Vec3(0, 0, 0));
+  auto const ground = model.ground().at({0, 0, 0});
+  auto const on_belt = belt.at(Vec3(0, 0, 0));
   model.connect(Guide{{.axis = Vec3(1, 0, 0)}, {}}, ground, on_belt);
   model.connect(Drive{{.law = {}, .axis = Vec3(1, 0, 0)}, {}}, ground, on_belt);
   auto const law = OnPlane<F>{{.radius = 0.0}, {.stiffness = 1e6}, friction};

@@ -64,7 +64,7 @@ double formula(Task const& task, std::span<double const> heights, std::size_t i,
 TEST(LighterLink, StressOfARigidLinkIsThatOfItsInertia) {
   Task const task{.step = 2e-3};
   std::vector<double> const heights{0.03, 0.022, 0.018, 0.012};
-  MatX const s = stresses_of(Link<planar::Rigid>{task}, heights);
+  MatX const s = stresses_of(lighter_link::Link<planar::Rigid>{task}, heights);
   double const most = s.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < task.sections; ++i)
     for (Index k = 50; k < s.rows(); k += 50) {
@@ -81,7 +81,7 @@ template <class B>
 void expect_stress_of_inertia(Index elements) {
   Task const task{.turn = {1.5, 0.5, 2.0}, .end_time = 4.5, .step = 1e-2};
   std::vector<double> const heights{0.03, 0.022, 0.018, 0.012};
-  MatX const rigid = stresses_of(Link<planar::Rigid>{task}, heights), s = stresses_of(Link<B>{task, elements}, heights);
+  MatX const rigid = stresses_of(lighter_link::Link<planar::Rigid>{task}, heights), s = stresses_of(lighter_link::Link<B>{task, elements}, heights);
   EXPECT_LT((s - rigid).cwiseAbs().maxCoeff(), 0.02 * rigid.cwiseAbs().maxCoeff());
 }
 TEST(LighterLink, TurnedSlowlyAllBearTheSame) {

@@ -134,11 +134,11 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
       F follower = force;
       follower.follow(e.joint, axis);
       auto const handle =
-          detail::add_joint_force(parts_, pool_of<F>(), follower, std::move(name), bodies_, {e.a, e.b}, axis);
+          detail::add_joint_force(parts_, pool_of<F>(), follower, std::move(name), bodies_, {{e.a, e.b}, axis});
       pool_of<F>().back().row = e.row;
       return handle;
     } else {
-      return detail::add_joint_force(parts_, pool_of<F>(), force, std::move(name), bodies_, {e.a, e.b}, axis);
+      return detail::add_joint_force(parts_, pool_of<F>(), force, std::move(name), bodies_, {{e.a, e.b}, axis});
     }
   }
 

@@ -19,7 +19,7 @@ namespace polybody {
 using namespace laws;
 namespace limits_test {
 
-/// Law cases with narrow limits: random frames lie beyond one of them.
+/// Cases of the law suite. The limits are narrow, so that random frames are beyond one of them.
 struct LimitOnAngleCase {
   static auto force() { return JointLimit{{.lower = -0.01, .upper = 0.01, .stiffness = 80.0, .damping = 3.0}}; }
 };

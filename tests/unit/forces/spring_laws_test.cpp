@@ -173,7 +173,7 @@ TEST(Winch, RefusesToReelMoreThanItsLength) {
       has(refusal([&] {
             simulate(hung.model, hung.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 1.0, .step = 1e-2}).run();
           }),
-          "Winch: the reeled length must be less than the length of 1 m"));
+          "Winch: the value of the reeled length must be less than the length of 1 m"));
 }
 
 TEST(SpringLaws, RefuseWrongNumbers) {
