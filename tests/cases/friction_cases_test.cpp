@@ -1,5 +1,5 @@
-// Cases of friction in contacts: a block at rest on an incline, a sliding block, a box launched along a floor (Q10),
-// the spin of a ball after a bounce (Q11) and a box on a conveyor, with regularised friction and with bristles.
+// Cases of friction in contacts: a block at rest on an incline, a sliding block, a box launched along a floor (X10),
+// the spin of a ball after a bounce (X11) and a box on a conveyor, with regularised friction and with bristles.
 
 #include <gtest/gtest.h>
 
@@ -76,7 +76,7 @@ template <class I>
 void expect_rest(I const& integrator, double step, char const* name) {
   for (double const amplitude : {0.0, 0.8}) {
     auto const [loaded, later] = Incline(amplitude).positions(integrator, step);
-    held_within(closed_form("Q friction", "displacement on an incline in 60 s [m]", "no slip below μN",
+    held_within(closed_form("incline", "displacement on an incline in 60 s [m]", "no slip below μN",
                             std::string("BristleFriction, ") + name),
                 std::abs(later - loaded), 1e-9, {equals("amplitude", amplitude), 4.6e-6});
     EXPECT_GT(later, 4e-6) << name;  // the sudden load moves the block by m g sin α/σ₀ = 4.76e-6 m, and about 2e-6 m
@@ -115,7 +115,7 @@ TEST(SlidingBlock, WithABristleStopsAsByCoulombsLaw) {
   held(slides("way at rest [m]"), x.q[0], 1.529051987768 - 0.3 * 2.0 * g / sigma, 1e-8);
 }
 
-// --- Q10: box launched along a floor --------------------------------------------------------------------------
+// --- X10: box launched along a floor --------------------------------------------------------------------------
 
 /// Cube of 0.1 m and 1 kg on four feet, launched at 6 m/s.
 template <class F>
@@ -148,7 +148,7 @@ struct Box {
 template <class F>
 void expect_box_slides() {
   std::string const by = std::string(name_of<F>) + ", generalised-α, h = 2e-4 s";
-  auto const box = [&](char const* what, char const* source) { return closed_form("Q10", what, source, by); };
+  auto const box = [&](char const* what, char const* source) { return closed_form("X10", what, source, by); };
   Box<F> const launched(Box<F>::friction(0.5));
   State x = launched.start();
   double stopped = 0.0, least = 1.0;
@@ -182,7 +182,7 @@ TEST(LaunchedBox, SlidesOnItsFeetAndTipsOverAboveTheLimit) {
   expect_box_slides<BristleFriction>();
 }
 
-// --- Q11: spin at the first bounce ----------------------------------------------------------------------------
+// --- X11: spin at the first bounce ----------------------------------------------------------------------------
 
 /// Ball of 0.5 kg and radius 0.05 m that hits the floor at 2 m/s down and 3 m/s along, without gravity. Returns the
 /// state after the bounce.
@@ -204,7 +204,7 @@ State bounced(F const& friction) {
 template <class F>
 void expect_spin(F const& slippery, F const& rough) {
   auto const spin = [](char const* what, char const* source) {
-    return closed_form("Q11", what, source, std::string(name_of<F>) + ", Dormand–Prince");
+    return closed_form("X11", what, source, std::string(name_of<F>) + ", Dormand–Prince");
   };
   auto const balance = [&](State const& x, char const* mu) {
     held(spin("m r v′ + J ω′ [kg m²/s]", "m r v"), 0.5 * 0.05 * x.v[0] + 0.4 * 0.5 * 0.0025 * x.v[4], 0.075, 1e-6,
@@ -221,8 +221,8 @@ void expect_spin(F const& slippery, F const& rough) {
   held(spin("spin after the bounce [rad/s]", "5/7 v/r"), grips.v[4], 42.857143, 0.02 * 42.857143, {"μ = 0.4"});
   balance(grips, "μ = 0.4");
 }
-// The bristle is critically damped for the mass 2/7 m of the slip. A soft bristle would return its energy, as an
-// elastic ball does.
+// The bristle is nearly critically damped for the mass 2/7 m of the slip. A soft bristle without damping returns its
+// energy.
 TEST(BouncedBall, GetsItsSpinAtTheFirstBounce) {
   expect_spin<Friction>({.coefficient = 0.1, .slip_speed = 0.01}, {.coefficient = 0.4, .slip_speed = 0.01});
   expect_spin<BristleFriction>({.coefficient = 0.1, .stiffness = 4e6, .damping = 1500.0},
@@ -259,7 +259,7 @@ void expect_conveyed(F const& friction) {
     lag = apart.x();
   }
   auto const conveyor = [](char const* what, char const* source) {
-    return closed_form("Q conveyor", what, source, std::string(name_of<F>) + ", generalised-α, h = 5e-5 s");
+    return closed_form("conveyor", what, source, std::string(name_of<F>) + ", generalised-α, h = 5e-5 s");
   };
   held(conveyor("duration of the slip [s]", "v/(μg)"), slips, 0.3261978, 2e-3);
   held(conveyor("way of the slip [m]", "v²/(2μg)"), lag, 0.1304791, 5e-4);

@@ -83,10 +83,10 @@ TEST(HostileParameters, OfFriction) {
                        [](BristleFriction const& friction) {
                          using Touch = Contact<SphereOnPlane, SpringDamperContact, BristleFriction>;
                          Model<Bodies<Rigid<>>, Joints<>, Forces<Touch>> model{Gravity{0, 0, -9.81}};
-                         auto const ball =
+                         auto const sphere =
                              model.add(Rigid<>(1.0, Mat3::Identity(), Placement::at({0, 0, 0.19})), "ball");
                          model.apply(Touch{{.radius = 0.2}, {.stiffness = 1e3, .damping = 1.0}, friction},
-                                     ball.at({0, 0, 0}), model.ground().at({0, 0, 0}), "hostile");
+                                     sphere.at({0, 0, 0}), model.ground().at({0, 0, 0}), "hostile");
                          run_ten_steps(model, GeneralisedAlpha{});
                        });
   std::cout << tried << " parameters of friction\n";

@@ -21,6 +21,16 @@ Vec<T, m> rate_of(ConstraintTerms<m, T> const& terms, std::array<Frame<T>, 2> co
     for (int j = 0; j < 6; ++j) rate[i] += terms.Ga(i, j) * a[j] + terms.Gb(i, j) * b[j];
   return rate;
 }
+/// Wrench Gᵀ q of the force q along a coordinate with the Jacobian G.
+template <StateScalar T>
+Wrench<T> wrench_along(Mat<T, 1, 6> const& jacobian, T const& q) {
+  Wrench<T> w;
+  for (int i = 0; i < 3; ++i) {
+    w.f[i] = jacobian(0, i) * q;
+    w.m[i] = jacobian(0, 3 + i) * q;
+  }
+  return w;
+}
 }  // namespace detail
 
 /// Type of a joint between two frames.
@@ -134,14 +144,7 @@ struct ReactionFriction {
                                     std::array<T, std::size_t(states)> const& z, double t) const {
     ConstraintTerms<1, T> const c = C::terms(f[0], f[1]);
     T const q = -resistance.template force<T>(rate_of(c, f), z, limit<T>(f, lambda, t));
-    std::array<Wrench<T>, 2> w;
-    for (int i = 0; i < 3; ++i) {
-      w[0].f[i] = c.Ga(0, i) * q;
-      w[0].m[i] = c.Ga(0, 3 + i) * q;
-      w[1].f[i] = c.Gb(0, i) * q;
-      w[1].m[i] = c.Gb(0, 3 + i) * q;
-    }
-    return w;
+    return {detail::wrench_along<T>(c.Ga, q), detail::wrench_along<T>(c.Gb, q)};
   }
   template <StateScalar T>
   std::array<T, std::size_t(states)> rates(std::array<Frame<T>, 2> const& f,
@@ -158,10 +161,11 @@ struct ReactionFriction {
   }
 
   /// Zero: regularised friction stores no energy [J].
-  double potential(std::array<Frame<double>, 2> const&, double) const
+  template <StateScalar T>
+  T potential(std::array<Frame<T>, 2> const&, double) const
     requires(states == 0)
   {
-    return 0.0;
+    return T(0.0);
   }
   /// Energy of the bristle, ½ σ₀ z² [J].
   double potential(std::array<Frame<double>, 2> const&, States const& z, double) const

@@ -123,27 +123,28 @@ TEST(LuGreFriction, HasThePreslidingLoopOfTheReference) {
   }
 }
 
-/// Force of a spring of 2 N/m whose other end moves at 0.1 m/s.
-struct PullingSpring {
+/// Force of a spring whose other end moves at `speed`, and a force that grows from zero to `load` within a second.
+struct Pull {
   static constexpr bool is_load = true;
+  double stiffness = 0.0, speed = 0.0, load = 0.0;
   void check(std::string const&, ScalarUnits const&) const {}
   template <StateScalar T>
   T force(T const& x, T const&, double t) const {
-    return (x * -1.0 + 0.1 * t) * 2.0;
+    return (x * -1.0 + speed * t) * stiffness + load * std::min(t, 1.0);
   }
 };
-/// Mass of 1 kg on a slide that the spring pulls.
+/// Mass of 1 kg on a slide.
 template <class Friction>
 struct PulledMass {
   using Slide = Joint<Prismatic, Constraint>;
-  Model<Bodies<Rigid<>>, Joints<Slide>, Forces<OnTranslation<Friction>, OnTranslation<PullingSpring>>> model;
+  Model<Bodies<Rigid<>>, Joints<Slide>, Forces<OnTranslation<Friction>, OnTranslation<Pull>>> model;
   BodyHandle<Rigid<>> body = model.add(Rigid<>(1.0, Mat3(Mat3::Identity()), Placement{}));
 
-  explicit PulledMass(Friction const& friction) {
+  PulledMass(Friction const& friction, Pull const& pull) {
     auto const slide = model.connect(Slide{{.axis = Vec3(1, 0, 0)}, {}}, model.ground().at({0, 0, 0}),
                                      body.at(Vec3(0, 0, 0)), "slide");
     model.apply(OnTranslation<Friction>{friction}, slide, "friction");
-    model.apply(OnTranslation<PullingSpring>{}, slide, "spring");
+    model.apply(OnTranslation<Pull>{pull}, slide, "pull");
   }
 };
 // Stick-slip: positions at multiples of 5 s, from tests/cases/friction_laws_reference.py.
@@ -154,12 +155,116 @@ TEST(LuGreFriction, HasTheStickSlipOfTheReference) {
   };
   for (Run const& run : {Run{0.0, {1.645918713e-05, 0.6275831289, 0.918279706, 1.272596412}},
                          Run{0.8, {1.008087347e-05, 0.6286058064, 0.9106940805, 1.275882806}}}) {
-    PulledMass<LuGreFriction> const mass(example(run.share));
+    PulledMass<LuGreFriction> const mass(example(run.share), {.stiffness = 2.0, .speed = 0.1});
     State x = mass.model.reference_state();
     for (std::size_t k = 0; k < 4; ++k) {
       simulate(mass.model, x, Radau{}, {.end_time = 5.0 * double(k + 1), .step = 1e-3}).run();
       EXPECT_NEAR(x.q[0], run.positions[k], 1e-5) << run.share << ' ' << k;
     }
   }
+}
+// The break-away force is F_s = 1.5 N. Below it, the displacement is that of the bristle, of the order of F_s/σ₀.
+TEST(LuGreFriction, BreaksAwayAtTheStaticFriction) {
+  for (double const share : {0.0, 0.8})
+    for (double const load : {1.45, 1.55}) {
+      PulledMass<LuGreFriction> const mass(example(share), {.load = load});
+      State x = mass.model.reference_state();
+      simulate(mass.model, x, Radau{}, {.end_time = 3.0, .step = 2e-3}).run();
+      if (load < 1.5)
+        EXPECT_LT(x.q[0], 1e-3) << share;
+      else
+        EXPECT_GT(x.q[0], 0.1) << share;
+    }
+}
+// Load of 0.7 + 0.09 sin t N below the elastic limit 0.8 F_c = 0.8 N: the elasto-plastic bristle returns to the same
+// position. LuGre friction drifts by more than 1e-6 m.
+struct Oscillating {
+  static constexpr bool is_load = true;
+  void check(std::string const&, ScalarUnits const&) const {}
+  template <StateScalar T>
+  T force(T const& x, T const&, double t) const {
+    return x * 0.0 + 0.7 * std::min(t, 1.0) + 0.09 * std::sin(20.0 * std::numbers::pi * t);
+  }
+};
+TEST(LuGreFriction, DriftsUnlessItIsElastoPlastic) {
+  for (double const share : {0.0, 0.8}) {
+    using Slide = Joint<Prismatic, Constraint>;
+    Model<Bodies<Rigid<>>, Joints<Slide>, Forces<OnTranslation<LuGreFriction>, OnTranslation<Oscillating>>> model;
+    auto const body = model.add(Rigid<>(1.0, Mat3(Mat3::Identity()), Placement{}));
+    auto const slide = model.connect(Slide{{.axis = Vec3(1, 0, 0)}, {}}, model.ground().at({0, 0, 0}),
+                                     body.at(Vec3(0, 0, 0)), "slide");
+    model.apply(OnTranslation<LuGreFriction>{example(share)}, slide, "friction");
+    model.apply(OnTranslation<Oscillating>{}, slide, "load");
+    State x = model.reference_state();
+    simulate(model, x, Radau{}, {.end_time = 3.0, .step = 2e-3}).run();
+    double const loaded = x.q[0];
+    simulate(model, x, Radau{}, {.end_time = 13.0, .step = 2e-3}).run();
+    if (share > 0.0)
+      EXPECT_LT(std::abs(x.q[0] - loaded), 1e-9);
+    else
+      EXPECT_GT(x.q[0] - loaded, 1e-6);
+  }
+}
+
+// A cylindrical joint has two laws: v = v₀ − F t/m and ω = ω₀ − M t/J. The part below the slip speeds is omitted.
+TEST(DryFriction, BrakesBothMotionsOfACylindricalJoint) {
+  using Sleeve = Joint<Cylindrical, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Sleeve>, Forces<OnAngle<DryFriction>, OnTranslation<DryFriction>>> model;
+  auto const body = model.add(Rigid<>(2.0, Mat3(0.5 * Mat3::Identity()), Placement{}));
+  auto const sleeve = model.connect(Sleeve{{.axis = Vec3(0, 1, 0)}, {}}, model.ground().at({0, 0, 0}),
+                                    body.at(Vec3(0, 0, 0)), "sleeve");
+  model.apply(OnAngle<DryFriction>{{{.sliding = 0.3}, 1e-6}}, sleeve, "moment");
+  model.apply(OnTranslation<DryFriction>{{{.sliding = 0.8}, 1e-6}}, sleeve, "force");
+  State x = model.reference_state();
+  model.set_velocity(x, body, {0, 3, 0}, {0, -2, 0});
+  simulate(model, x, Radau{}, {.end_time = 1.0, .step = 1e-2}).run();
+  EXPECT_NEAR(x.v[1], 3.0 - 0.8 / 2.0, 1e-9);
+  EXPECT_NEAR(x.v[4], -2.0 + 0.3 / 0.5, 1e-9);
+}
+// A ball in a spherical joint stops after J ω₀/M along a fixed axis. The bristle then holds it.
+TEST(SphericalFriction, StopsABallAlongItsAngularVelocity) {
+  auto const rate_at = [](auto const& friction, double end) {
+    using Ball = Joint<Spherical, Constraint>;
+    Model<Bodies<Rigid<>>, Joints<Ball>, Forces<std::decay_t<decltype(friction)>>> model;
+    auto const body = model.add(Rigid<>(2.0, Mat3(0.5 * Mat3::Identity()), Placement{}));
+    auto const a = model.ground().at({0, 0, 0});
+    auto const b = body.at(Vec3(0, 0, 0));
+    model.connect(Ball{}, a, b);
+    model.apply(friction, a, b, "friction");
+    State x = model.reference_state();
+    model.set_velocity(x, body, {0, 0, 0}, {2, -1, 2});
+    simulate(model, x, Radau{}, {.end_time = end, .step = 1e-2}).run();
+    return Vec3(x.v.segment<3>(3));
+  };
+  Vec3 const expected = Vec3(2, -1, 2) * (1.0 - 0.6 / 0.5 * 1.0 / 3.0);
+  EXPECT_LT((rate_at(SphericalFriction{{.sliding = 0.6}, 1e-6}, 1.0) - expected).norm(), 1e-8);
+  SphericalBristleFriction const bristle{.sliding = 0.6, .stiffness = 100.0, .damping = 1.0};
+  EXPECT_LT((rate_at(bristle, 1.0) - expected).norm(), 1e-8);
+  EXPECT_LT(rate_at(bristle, 6.0).norm(), 1e-6);
+}
+
+TEST(FrictionLaws, RefuseInvalidParameters) {
+  ScalarUnits const& units = detail::TranslationBetween::units;
+  auto const message = [&](auto const& law) { return refusal([&] { law.check("\"f\"", units); }); };
+  EXPECT_EQ(message(FrictionCurve{.sliding = -1.0}),
+            "\"f\": the sliding friction must be zero or positive, and finite, but is -1 N.");
+  EXPECT_EQ(message(FrictionCurve{.sliding = 1.0, .break_away = 0.5, .stribeck_speed = 1.0}),
+            "\"f\": the break-away friction must be at least the sliding friction, 1 N, but is 0.5 N.");
+  EXPECT_EQ(message(FrictionCurve{.sliding = 1.0, .break_away = 2.0}),
+            "\"f\": the Stribeck speed of the friction must be positive and finite, but is 0 m/s.");
+  EXPECT_EQ(message(FrictionCurve{.sliding = 1.0, .viscous = -2.0}),
+            "\"f\": the viscous friction must be zero or positive, and finite, but is -2 N s/m.");
+  EXPECT_EQ(message(DryFriction{{.sliding = 1.0}, 0.0}),
+            "\"f\": the slip speed of the friction must be positive and finite, but is 0 m/s.");
+  EXPECT_EQ(message(LuGreFriction{.curve = {.sliding = 0.0}, .stiffness = 1.0, .damping = 1.0}),
+            "\"f\": the sliding friction must be positive and finite, but is 0 N.");
+  EXPECT_EQ(message(LuGreFriction{.curve = {.sliding = 1.0}, .stiffness = 0.0, .damping = 1.0}),
+            "\"f\": the bristle stiffness of the friction must be positive and finite, but is 0 N/m.");
+  EXPECT_EQ(message(LuGreFriction{.curve = {.sliding = 1.0}, .stiffness = 1.0, .damping = -1.0}),
+            "\"f\": the bristle damping of the friction must be zero or positive, and finite, but is -1 N s/m.");
+  EXPECT_EQ(message(LuGreFriction{.curve = {.sliding = 1.0}, .stiffness = 1.0, .damping = 1.0, .elastic_share = 1.0}),
+            "\"f\": the elastic share of the friction must lie in [0, 1), but is 1.");
+  EXPECT_EQ(refusal([] { SphericalBristleFriction{.sliding = 1.0, .stiffness = -1.0, .damping = 1.0}.check("\"f\""); }),
+            "\"f\": the bristle stiffness of the friction must be positive and finite, but is -1 N m/rad.");
 }
 }  // namespace friction_laws_test

@@ -170,19 +170,20 @@ void expect_braked(J const& joint, F const& force, I const& integrator, double s
   using A = Arm<J, F>;
   A const arm(joint, force, Gravity{});
   State x = arm.spinning(20.0);
+  if constexpr (F::states > 0) arm.model.states(x, arm.friction)[0] = -0.5 * 0.1 * A::m * A::e * 400.0 / 1e3;
   EnergyAudit audit(arm.model);
   for (State const& now : simulate(arm.model, x, integrator, {.end_time = 2.0, .step = step})) audit.record(now);
   double const beta = 0.5 * 0.1 * A::m * A::e / A::inertia, kappa = beta / std::sqrt(1.0 - beta * beta);
   held({"bearing friction", "angular velocity of an unbalanced rotor [rad/s]", By::closed_form, "1/ω = 1/ω₀ + κ t",
         name},
        arm.rate(x), 1.0 / (1.0 / 20.0 + kappa * 2.0), tolerance);
-  EXPECT_LT(audit.relative(), std::max(1e-6, tolerance)) << name;
+  EXPECT_LT(audit.relative(), std::max(1e-6, 0.1 * tolerance)) << name;
   EXPECT_GT(audit.dissipated(), 1.0);
 }
 TEST(ReactionFriction, BrakesAnUnbalancedRotorAsInTheClosedForm) {
   auto const regular = bearing<Hinge>(0.5, 1e-6);
   expect_braked(about_y, regular, GeneralisedAlpha{}, 5e-4, 1e-5, "generalised-α, h = 5e-4 s");
-  expect_braked(about_y, regular, Radau{}, 2e-3, 1e-8, "Radau IIA, h = 2e-3 s");
+  expect_braked(about_y, regular, Radau{}, 1e-3, 1e-8, "Radau IIA, h = 1e-3 s");
   expect_braked(about_y, regular, RungeKutta4<Projection>{}, 1e-3, 1e-8, "Runge–Kutta with projection, h = 1e-3 s");
   expect_braked(about_y, sticking_bearing<Hinge>(0.5), GeneralisedAlpha{}, 5e-4, 1e-5,
                 "bristle, generalised-α, h = 5e-4 s");
@@ -201,7 +202,7 @@ TEST(StickingBearingFriction, HoldsAnArmUpToTheLimit) {
     Arm<Hinge, StickingBearingFriction<Hinge>> const arm(about_y, sticking_bearing<Hinge>(0.5), Gravity{0, 0, -9.81},
                                                          angle);
     State x = arm.model.reference_state();
-    arm.model.states(x, arm.friction)[0] = share * 0.5 * 0.1 * 2.0 * 9.81 / 1e3;  // the bristle bears the arm
+    arm.model.states(x, arm.friction)[0] = share * 0.5 * 0.1 * 2.0 * 9.81 / 1e3;  // the bristle carries the arm
     compute_accelerations(arm.model, x);
     if (share > 1.0) {
       EXPECT_GT(largest_size(x.a.head(6)), 0.1);
