@@ -14,7 +14,7 @@ namespace polybody {
 /// Span of a belt in one state.
 struct BeltSpan {
   double length = 0.0;   ///< distance of its tangent points l [m]
-  double strain = 0.0;   ///< relative elongation ε = l/L − 1 with the unstretched length L; negative if the span is slack
+  double strain = 0.0;   ///< relative elongation ε = l/L − 1 with the unstretched length L; negative if slack
   double tension = 0.0;  ///< N ≥ 0 [N]
 };
 
