@@ -18,6 +18,7 @@
 #include <polybody/forces/loads.hpp>
 #include <polybody/forces/normal_force.hpp>
 #include <polybody/forces/springs.hpp>
+#include <polybody/forces/tyre.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/joints/nonholonomic.hpp>
@@ -33,6 +34,7 @@
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/redundancy_dropping.hpp>
+#include <polybody/vehicle/wheel.hpp>
 
 namespace polybody {
 
@@ -56,6 +58,8 @@ static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<Sp
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
 static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);
 static_assert(ForceElement<SpringDamper> && HasPotential<SpringDamper>);
+static_assert(TyreLaw<LinearTyre> && TyreLaw<MagicFormula>);
+static_assert(ForceElement<Wheel<LinearTyre>> && HasStatePotential<Wheel<MagicFormula, HeightField>>);
 static_assert(JointGeometry<Cylindrical>);
 static_assert(JointGeometry<Distance>);
 static_assert(JointGeometry<Gear>);
