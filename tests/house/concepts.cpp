@@ -32,6 +32,7 @@
 #include <polybody/forces/spherical_friction.hpp>
 #include <polybody/forces/spring_laws.hpp>
 #include <polybody/forces/springs.hpp>
+#include <polybody/forces/tyre.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/joints/nonholonomic.hpp>
@@ -47,6 +48,7 @@
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
 #include <polybody/solvers/redundancy_dropping.hpp>
+#include <polybody/vehicle/wheel.hpp>
 
 namespace polybody {
 
@@ -88,6 +90,8 @@ static_assert(ScalarLaw<Servo<>> && ScalarLaw<PidServo<>> && ScalarLaw<RateLimit
 static_assert(ScalarLaw<DcMotor<>> && ScalarLaw<TorqueSpeedCurve<>>);
 static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);
 static_assert(ForceElement<SpringDamper> && HasPotential<SpringDamper>);
+static_assert(TyreLaw<LinearTyre> && TyreLaw<MagicFormula>);
+static_assert(ForceElement<Wheel<LinearTyre>> && HasStatePotential<Wheel<MagicFormula, HeightField>>);
 static_assert(JointGeometry<Cylindrical>);
 static_assert(JointGeometry<Distance>);
 static_assert(JointGeometry<Gear>);
