@@ -115,7 +115,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
 
   UrdfRobot const& robot() const { return robot_; }  ///< content of the file
 
-  /// Handle of the body of type B that carries a link. \throws InvalidInput for a link that no body of this type
+  /// Handle of the body of type B that carries `link`. \throws InvalidInput for a link that no body of this type
   /// carries.
   template <Body B = Rigid<>>
   BodyHandle<B> const& body(std::string const& link) const {
@@ -126,8 +126,8 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
                        {ErrorObject{robot_.where(robot_.links[std::size_t(robot_.link(link))])},
                         host < 0 ? ": the link belongs to the ground." : ": the body of the link has another type."});
   }
-  /// Handle of a joint with the geometry G: `joint<Revolute>("elbow")`. \throws InvalidInput for a joint of another
-  /// geometry.
+  /// Handle of the joint `name` with the geometry G: `joint<Revolute>("elbow")`. \throws InvalidInput for a joint of
+  /// another geometry.
   template <JointGeometry G>
   ElementHandle<JointOf<G>> const& joint(std::string const& name) const {
     Index const i = robot_.joint(name);
@@ -135,20 +135,20 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     throw InvalidInput("urdf.other_joint", {ErrorObject{robot_.where(robot_.joints[std::size_t(i)])},
                                             ": the joint is not a ", G::name, "."});
   }
-  /// Marker at a point of a link that a rigid body carries. \throws InvalidInput for another link.
+  /// Marker at the point p of a link that a rigid body carries. \throws InvalidInput for another link.
   template <class = void>  // compiled only if used
   Marker<Rigid<>> at(UrdfPoint const& p) const {
     BodyHandle<Rigid<>> const& handle = body(p.link);
     return handle.at(from_centre(robot_.link(p.link), p.point));
   }
-  /// Direction in world axes, in the reference configuration, of `v` (3) in axes of a link: for the axis of a joint.
+  /// Direction in world axes, in the reference configuration, of `v` (3) in axes of `link`: for the axis of a joint.
   template <class = void>  // compiled only if used
   Vec3 direction(std::string const& link, Vec3 const& v) const {
     return poses_[std::size_t(robot_.link(link))].frame.axes * v;
   }
 
-  /// Joins points of two links, as `Model::connect` does: for loops, which a URDF file cannot contain. Call
-  /// `assemble(model, x)` if the points do not coincide when all joints are at zero.
+  /// Joins the points a and b of two links by a joint `name`, as `Model::connect` does: for loops, which a URDF file
+  /// cannot contain. Call `assemble(model, x)` if the points do not coincide when all joints are at zero.
   template <class J>
   ElementHandle<J> connect(J const& joint, UrdfPoint const& a, UrdfPoint const& b, std::string const& name = "") {
     ElementHandle<J> out;
@@ -183,7 +183,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     return x;
   }
 
-  /// Frame of a link in state x, in world axes. \throws InvalidInput for a state of another model.
+  /// Frame of `link` in state x, in world axes. \throws InvalidInput for a state of another model.
   template <class = void>  // compiled only if used
   Placement placement(State const& x, std::string const& link) const {
     Index const i = robot_.link(link);

@@ -59,7 +59,7 @@ struct UrdfRobot {
   std::vector<UrdfLink> links = {};    ///< links in the order of the tree
   std::vector<UrdfJoint> joints = {};  ///< joints in the order of the links that they carry
 
-  /// Index of a link. \throws InvalidInput for a name that no link has.
+  /// Index of the link `link_name`. \throws InvalidInput for a name that no link has.
   template <class = void>  // compiled only if used
   Index link(std::string const& link_name) const {
     for (std::size_t i = 0; i < links.size(); ++i)
@@ -67,7 +67,7 @@ struct UrdfRobot {
     throw InvalidInput("urdf.no_link", {ErrorObject{file}, ": there is no link \"", link_name, "\". The links are ",
                                         names_of(links), "."});
   }
-  /// Index of a joint. \throws InvalidInput for a name that no joint has.
+  /// Index of the joint `joint_name`. \throws InvalidInput for a name that no joint has.
   template <class = void>  // compiled only if used
   Index joint(std::string const& joint_name) const {
     for (std::size_t i = 0; i < joints.size(); ++i)

@@ -90,7 +90,7 @@ struct Inertia {
     return {mass, tensor, {placement.origin + placement.axes * centre, placement.axes}};
   }
 
-  /// Inertia of two parts in the same axes that move as one body.
+  /// Inertia of two parts a and b in the same axes that move as one body.
   friend Inertia operator+(Inertia const& a, Inertia const& b) {
     a.check("Inertia");
     b.check("Inertia");
@@ -99,7 +99,7 @@ struct Inertia {
             Mat3(a.tensor + b.tensor + detail::point_inertia(a.mass * (b.mass / mass), b.centre - a.centre))};
   }
 
-  /// Solid cuboid with the edges `edges` (3) along x, y and z [m]; the origin is its centre.
+  /// Solid cuboid of `mass` [kg] with the `edges` (3) along x, y and z [m]; the origin is its centre.
   ///   J_x = m (b² + c²)/12 …
   template <class = void>  // compiled only if used
   static Inertia box(double mass, Vec3 const& edges) {
@@ -108,7 +108,7 @@ struct Inertia {
     Vec3 const square = edges.cwiseProduct(edges) * (mass / 12.0);
     return of_principal("Inertia::box", mass, {square[1] + square[2], square[2] + square[0], square[0] + square[1]});
   }
-  /// Solid cylinder with `radius` [m] and `length` along z [m]; the origin is its centre.
+  /// Solid cylinder of `mass` [kg] with `radius` [m] and `length` along z [m]; the origin is its centre.
   ///   J_z = m r²/2,  J_x = J_y = m (3 r² + l²)/12.
   template <class = void>  // compiled only if used
   static Inertia cylinder(double mass, double radius, double length) {
@@ -117,15 +117,15 @@ struct Inertia {
     double const across = mass * (3.0 * radius * radius + length * length) / 12.0;
     return of_principal("Inertia::cylinder", mass, {across, across, 0.5 * mass * radius * radius});
   }
-  /// Solid sphere with `radius` [m]; the origin is its centre.  J = 2 m r²/5.
+  /// Solid sphere of `mass` [kg] with `radius` [m]; the origin is its centre.  J = 2 m r²/5.
   template <class = void>  // compiled only if used
   static Inertia sphere(double mass, double radius) {
     require_positive(radius, "Inertia::sphere: the radius");
     double const all = 0.4 * mass * radius * radius;
     return of_principal("Inertia::sphere", mass, {all, all, all});
   }
-  /// Tube with the radii `outer` and `inner` [m] and `length` along z [m]; the origin is its centre. For `inner` =
-  /// `outer` it is a thin shell.  J_z = m (r² + s²)/2,  J_x = J_y = m (3 (r² + s²) + l²)/12.
+  /// Tube of `mass` [kg] with the radii `outer` and `inner` [m] and `length` along z [m]; the origin is its centre. For
+  /// `inner` = `outer` it is a thin shell.  J_z = m (r² + s²)/2,  J_x = J_y = m (3 (r² + s²) + l²)/12.
   template <class = void>  // compiled only if used
   static Inertia tube(double mass, double outer, double inner, double length) {
     require_positive(outer, "Inertia::tube: the outer radius");
