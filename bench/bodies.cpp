@@ -4,6 +4,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "registered.hpp"
 
@@ -144,6 +145,7 @@ int main(int argc, char** argv) {
   add("AncfBeam<Continuum<>>", AncfBeam<Continuum<>>::from(bar(), n));
   add("Lrvf<RelativeRotation>", Lrvf<>::from(bar(), n));
   add("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
+  add("Se3Beam", Se3Beam::from(bar(), n));
   Structure const s = structure_of(bar(), 8);
   add("Ffr/modes:6", Ffr(s, fixed_interface_modes(s, 6)));
   add("Ffr/stiffening/modes:6", Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}));

@@ -1,5 +1,6 @@
 #pragma once
 /// \file
-/// Geometrically exact beam with helicoidal interpolation on SE(3): `Se3Beam`, and the operators of SE(3).
+/// Geometrically exact beams with one interpolation of position and rotation: `Se3Beam` and `planar::Se3Beam`.
 
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>

@@ -121,6 +121,25 @@ TEST(Se3BeamMesh, ErrorsAreOfSecondOrder) {
   EXPECT_NEAR((b - limit).norm() / (c - limit).norm(), 4.0, 0.03);
 }
 
+// Distributed load p over the whole cantilever: w = p L⁴/8EI + p L²/2GA and the support force p L, for small
+// deflections. The load acts at points of the helices.
+TEST(Se3BeamMesh, DistributedLoadBendsTheCantilever) {
+  Bar const bar = straight_bar();
+  BarConstants const c = constants(bar);
+  double const p = 1e-3, exact = p * std::pow(length, 4) / (8 * *c.EI_y) + p * length * length / (2 * *c.GA_z);
+  auto const deflection = [&](Index n) {
+    Rod rod(Se3Beam::from(bar, n), {}, {});
+    apply_distributed(rod.model, rod.bar, PointForce<>{.force = {0, 0, p}}, {.from = 0.0, .to = length, .pieces = n});
+    rod.x = rod.model.reference_state();
+    equilibrium(rod.model, rod.x);
+    EXPECT_NEAR(reaction(rod.model, rod.x, rod.clamp).f[2], -p * length, 1e-12);
+    return rod.tip_displacement()[2];
+  };
+  double const coarse = deflection(8), fine = deflection(16);
+  EXPECT_NEAR((coarse - exact) / (fine - exact), 4.0, 0.01);
+  EXPECT_NEAR((4.0 * fine - coarse) / 3.0, exact, 1e-6 * exact);
+}
+
 /// Largest distance between the nodes and the curve that the rotations imply, r(0) + ∫ R e₁ ds, without the part
 /// Σ ∫ R Γ ds of the strains: the part of the interpolation.
 template <class B>

@@ -4,6 +4,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "runs.hpp"
 
@@ -65,6 +66,7 @@ TEST(HostileParameters, OfBars) {
   tried += try_bars<AncfBeam<>>("AncfBeam", [](Bar const& b) { return AncfBeam<>::from(b, 2); });
   tried += try_bars<AncfBeam<Continuum<>>>("AncfBeam<Continuum>",
                                            [](Bar const& b) { return AncfBeam<Continuum<>>::from(b, 1); });
+  tried += try_bars<Se3Beam>("Se3Beam", [](Bar const& b) { return Se3Beam::from(b, 2); });
   tried += try_bars<Lrvf<>>("Lrvf", [](Bar const& b) { return Lrvf<>::from(b, 2); });
   tried +=
       try_bars<planar::AncfCable<>>("planar::AncfCable", [](Bar const& b) { return planar::AncfCable<>::from(b, 2); });
