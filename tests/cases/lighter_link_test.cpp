@@ -81,7 +81,8 @@ template <class B>
 void expect_stress_of_inertia(Index elements) {
   Task const task{.turn = {1.5, 0.5, 2.0}, .end_time = 4.5, .step = 1e-2};
   std::vector<double> const heights{0.03, 0.022, 0.018, 0.012};
-  MatX const rigid = stresses_of(lighter_link::Link<planar::Rigid>{task}, heights), s = stresses_of(lighter_link::Link<B>{task, elements}, heights);
+  MatX const rigid = stresses_of(lighter_link::Link<planar::Rigid>{task}, heights),
+             s = stresses_of(lighter_link::Link<B>{task, elements}, heights);
   EXPECT_LT((s - rigid).cwiseAbs().maxCoeff(), 0.02 * rigid.cwiseAbs().maxCoeff());
 }
 TEST(LighterLink, TurnedSlowlyAllBearTheSame) {

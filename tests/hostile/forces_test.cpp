@@ -122,7 +122,7 @@ TEST(HostileParameters, OfWheels) {
                                           .camber_stiffness = 10.0,
                                           .trail = 0.03},
                                  .relaxation = relaxation,
-                                 .rolling = {.coefficient = 0.01, .speed = 0.1}},
+                                 .rolling = RollingResistance{.coefficient = 0.01, .speed = 0.1}},
                      "Wheel<LinearTyre>");
   tried += try_force(MagicWheel{.radius = 0.5,
                                 .axle = Vec3::UnitY(),

@@ -14,8 +14,8 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/forces/belt.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
+#include <polybody/forces/belt.hpp>
 #include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/differential.hpp>

@@ -8,6 +8,7 @@
 /// axes. All operators on screws are matrices [X, Y; 0, X] of 6×6, where X is the operator on rotations, and Y its
 /// derivative for φ in the direction p: SE(3) follows from SO(3) by dual numbers φ + ε p [Brodsky & Shoham 1999;
 /// Sonneville, Cardona & Brüls 2014, App. A].
+/// Theory: Eqs. 2.101 to 2.105.
 
 #include <array>
 

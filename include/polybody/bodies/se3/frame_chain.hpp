@@ -2,6 +2,7 @@
 /// \file
 /// Chain of two-node elements whose nodes are frames, with its inertia: the parts of `Se3Beam` that do not depend on
 /// its strains.
+/// Theory: Eq. 2.114.
 
 #include <algorithm>
 #include <vector>

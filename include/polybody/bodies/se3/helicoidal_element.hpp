@@ -6,6 +6,7 @@
 /// Cardona & Brüls 2014, §4]. With ρ = R₁ᵀ (r₂ − r₁), X = Jr⁻¹(φ), and Y, the derivative of X in the direction p:
 ///   φ = log(R₁ᵀ R₂),  p = Xᵀ ρ,  T⁻¹(d) = [X, Y; 0, X],
 ///   δφ = X δθ₂ − Xᵀ δθ₁,  δp = Xᵀ R₁ᵀ (δr₂ − δr₁) + Y δθ₂ − Yᵀ δθ₁.
+/// Theory: Eqs. 2.107 to 2.113.
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/body.hpp>

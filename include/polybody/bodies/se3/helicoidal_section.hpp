@@ -6,6 +6,7 @@
 /// interpolation [Borri & Bottasso 1994; Sonneville, Cardona & Brüls 2014, §4]. With the twists V₁, V₂ of the nodes and
 /// the operators of math/se3.hpp:
 ///   V(ξ) = Ad(exp(−ξd)) V₁ + ξ T(ξd) ḋ = P₁ V₁ + P₂ V₂,  T(d) ḋ = V₂ − Ad(exp(−d)) V₁.
+/// Theory: Eqs. 2.106, 2.115 to 2.118.
 
 #include <polybody/bodies/se3/helicoidal_element.hpp>
 

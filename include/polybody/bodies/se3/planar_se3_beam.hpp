@@ -2,6 +2,7 @@
 /// \file
 /// Geometrically exact beam in the plane whose elements are circular arcs, with one interpolation of position and angle
 /// on SE(2).
+/// Theory: Eqs. 2.119, 2.120.
 
 #include <string_view>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Geometrically exact beam in space with one interpolation of position and rotation on SE(3).
+/// Theory: Eqs. 2.106 to 2.108, 2.117, 2.118.
 
 #include <string_view>
 
