@@ -35,7 +35,7 @@ struct UrdfOptions {
   Required<UrdfRoot> root;   ///< attachment of the root link
   Gravity gravity = {};      ///< gravity in world axes [m/s²]; zero by default
   Placement placement = {};  ///< frame of the root link in world axes, in the reference configuration
-  bool free_mimics = false;  ///< true: joints with <mimic> move freely, and are not refused if no gear represents them
+  bool free_mimics = false;  ///< true: joints with `mimic` move freely, and are not refused if no gear represents them
   std::optional<UrdfStops> stops = {};  ///< stops at the limits of revolute and prismatic joints; none by default
   std::optional<UrdfSlipSpeeds> slip_speeds = {};  ///< dry friction of these joints; none by default
 };
@@ -159,7 +159,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     return out;
   }
 
-  /// State with the `motions` of joints, by their names; other joints are at rest at zero. Joints with <mimic> follow
+  /// State with the `motions` of joints, by their names; other joints are at rest at zero. Joints with `mimic` follow
   /// their joint. The motion of a free root has the name of the root link.
   /// \throws InvalidInput for a name that no joint has, for a motion that the joint does not permit, and if a flexible
   /// link leaves its reference configuration.
@@ -309,7 +309,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   void add_mimic(UrdfJoint const& b) {
     UrdfJoint const& a = robot_.joints[std::size_t(b.mimic->joint)];
     auto const refuse = [&](std::string const& why) {
-      throw InvalidInput("urdf.mimic", {ErrorObject{robot_.where(b)}, ": its <mimic> of the joint \"", a.name,
+      throw InvalidInput("urdf.mimic", {ErrorObject{robot_.where(b)}, ": its `mimic` of the joint \"", a.name,
                                         "\" is not supported, because ", why,
                                         ". Set free_mimics of UrdfOptions, and add a coupling to the model."});
     };

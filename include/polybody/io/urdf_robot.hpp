@@ -19,7 +19,7 @@ struct UrdfLimit {
   double velocity = 0.0;  ///< largest speed [rad/s], [m/s]
 };
 
-/// Coupling of a joint to another one, as in the element <mimic>: position = multiplier · position of `joint` + offset.
+/// Coupling of a joint to another one, as in the element `mimic`: position = multiplier · position of `joint` + offset.
 struct UrdfMimic {
   Index joint = -1;         ///< index of the joint that is followed
   double multiplier = 1.0;  ///< ratio of the positions
@@ -49,7 +49,7 @@ struct UrdfJoint {
   std::optional<UrdfLimit> limit = {};  ///< <limit>, if given
   double damping = 0.0;                 ///< viscous damping [N m s/rad], [N s/m]
   double friction = 0.0;                ///< magnitude of the Coulomb friction [N m], [N]
-  std::optional<UrdfMimic> mimic = {};  ///< <mimic>, if given
+  std::optional<UrdfMimic> mimic = {};  ///< `mimic`, if given
 };
 
 /// Robot of a URDF file. Parents come before their children: link 0 is the root.
