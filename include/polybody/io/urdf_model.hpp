@@ -309,7 +309,7 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
   void add_mimic(UrdfJoint const& b) {
     UrdfJoint const& a = robot_.joints[std::size_t(b.mimic->joint)];
     auto const refuse = [&](std::string const& why) {
-      throw InvalidInput("urdf.mimic", {ErrorObject{robot_.where(b)}, ": its `mimic` of the joint \"", a.name,
+      throw InvalidInput("urdf.mimic", {ErrorObject{robot_.where(b)}, ": its <mimic> of the joint \"", a.name,
                                         "\" is not supported, because ", why,
                                         ". Set free_mimics of UrdfOptions, and add a coupling to the model."});
     };
