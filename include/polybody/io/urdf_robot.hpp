@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// Limits of a joint, as in the element <limit>.
+/// Limits of a joint, as in the element `limit`.
 struct UrdfLimit {
   double lower = 0.0;     ///< least position [rad], [m]; no limit for a continuous joint
   double upper = 0.0;     ///< largest position [rad], [m]; no limit for a continuous joint
@@ -46,7 +46,7 @@ struct UrdfJoint {
   Index child = -1;                     ///< index of the child link
   Placement origin = {};                ///< frame of the joint in the axes of the parent link
   Vec3 axis = Vec3::UnitX();            ///< (3) unit vector of the axis, or normal of a plane; axes of the joint
-  std::optional<UrdfLimit> limit = {};  ///< <limit>, if given
+  std::optional<UrdfLimit> limit = {};  ///< `limit`, if given
   double damping = 0.0;                 ///< viscous damping [N m s/rad], [N s/m]
   double friction = 0.0;                ///< magnitude of the Coulomb friction [N m], [N]
   std::optional<UrdfMimic> mimic = {};  ///< `mimic`, if given

@@ -145,7 +145,7 @@ struct BoxOnBox {
   }
 
  private:
-  /// True if a face of box b separates the boxes. \param h half sizes (3) of each box [m]
+  /// True if a face of box b separates the boxes; `h_a` and `h_b` are their half sizes (3) [m].
   template <class = void>
   static bool separates(Frame<double> const& a, Vec3 const& h_a, Frame<double> const& b, Vec3 const& h_b) {
     Vec3 const arm = a.r - b.r;
