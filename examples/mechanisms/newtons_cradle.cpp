@@ -26,9 +26,9 @@ int main() {
   double most = 0.0;
   int step = 0;
   for (auto const& now :
-       simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.05, .step = 1e-6, .max_step = 1e-5})) {
+       simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.006, .step = 1e-6, .max_step = 1e-5})) {
     most = std::max(most, now.position(balls[4].centre())[0] > 0.162 ? now.frame(balls[4].centre()).v.norm() : 0.0);
-    if (step++ % 20 != 0) continue;
+    if (step++ % 4 != 0) continue;
     for (std::size_t i = 0; i < 5; ++i)
       figure.curves[i].x.push_back(now.t), figure.curves[i].y.push_back(now.frame(balls[i].centre()).v[0]);
   }

@@ -60,30 +60,34 @@ auto stop() {
 
 /// Arm of 1.5 kg on a hinge about −y, which hangs at zero, with its centre of mass at 0.5 m and J = 0.5 kg m² about
 /// the hinge: 0.125 kg m² about the centre. Servo and stop are parts of the library or lambdas.
+/// The third body axis is the axis of the hinge.
+Mat3 const axes_of_arm = [] {
+  Mat3 axes;
+  axes << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return axes;
+}();
 template <class Policy, bool parts>
 struct Arm {
   using Pin = Joint<Revolute, Policy>;
   using Drive = std::conditional_t<parts, SpeedServo, decltype(servo())>;
   using Stop = std::conditional_t<parts, JointLimit, decltype(stop())>;
   Model<Bodies<Rigid<>>, Joints<Pin>, Forces<Drive, Stop>> model{Gravity{0, 0, -9.81}};
-  BodyHandle<Rigid<>> arm =
-      model.add(Rigid<>(1.5, Mat3(Vec3(0.125, 0.125, 0.01).asDiagonal()), Placement::at({0, 0, -0.5})), "arm");
+  BodyHandle<Rigid<>> arm = model.add(
+      Rigid<>(1.5, Mat3(Vec3(0.125, 0.01, 0.125).asDiagonal()), Placement{Vec3(0, 0, -0.5), axes_of_arm}), "arm");
   ElementHandle<Pin> hinge;
   ElementHandle<Stop> end;
 
   explicit Arm(Policy const& policy = {})
       : hinge(model.connect(Pin{Revolute{.axis = Vec3(0, -1, 0)}, policy}, model.ground().at({0, 0, 0}),
-                            arm.at(Vec3(0, 0, 0.5)), "hinge")) {
+                            arm.at(Vec3(0, 0.5, 0)), "hinge")) {
     if constexpr (parts) {
       model.apply(
           SpeedServo{{.target = reversed(), .proportional_gain = 0.0, .derivative_gain = 40.0, .most_force = 20.0}},
           hinge, "servo");
       end = model.apply(JointLimit{{.upper = 0.5, .stiffness = 1e4, .damping = 50.0}}, hinge, "stop");
     } else {
-      Mat3 axes;  // third column: axis of the hinge
-      axes << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-      auto const on_ground = model.ground().at(Placement{Vec3::Zero(), axes});
-      auto const on_arm = arm.at(Placement{Vec3(0, 0, 0.5), axes});
+      auto const on_ground = model.ground().at(Placement{Vec3::Zero(), axes_of_arm});
+      auto const on_arm = arm.at(Vec3(0, 0.5, 0));
       model.apply(servo(), on_ground, on_arm, "servo");
       end = model.apply(stop(), on_ground, on_arm, "stop");
     }

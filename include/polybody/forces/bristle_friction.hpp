@@ -31,8 +31,8 @@ struct BristleFriction {
 /// The states are the deflections z of the bristles in the axes of marker b [m], three for each slot of the geometry.
 template <ContactGeometry G, NormalForce N>
 struct Contact<G, N, BristleFriction> {
-  using Geometry = G;  ///< type of the geometry
-  static constexpr int markers = 2, states = 3 * most_points<G>();
+  using Geometry = G;                                               ///< type of the geometry
+  static constexpr int markers = 2, states = 3 * most_points<G>();  ///< two markers; three states a slot
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = G::needs;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;

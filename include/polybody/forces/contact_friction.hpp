@@ -27,7 +27,8 @@ struct Friction {
     using std::sqrt;
     return n * coefficient / sqrt(T(speed2 + slip_speed * slip_speed));
   }
-  /// The ratio `resistance` for doubles, multiplied by `cd`.
+  /// The ratio `resistance` for doubles, multiplied by `cd`; `speed2` [m²/s²] is the squared slip velocity, n [N] the
+  /// normal force.
   double slope(double speed2, double n, double cd) const {
     return cd * coefficient * n / std::sqrt(speed2 + slip_speed * slip_speed);
   }

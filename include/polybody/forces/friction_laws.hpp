@@ -45,6 +45,7 @@ struct DryFriction {
     curve.check(name, units);
     ScalarUnits::require_positive(slip_speed, units.rate, name, ": the slip speed of the friction");
   }
+  /// Force [N] or [N m] at the rate v.
   template <StateScalar T>
   T force(T const&, T const& v, double) const {
     using std::sqrt;
@@ -81,10 +82,12 @@ struct LuGreFriction {
                          {ErrorObject{name}, ": the elastic share of the friction must lie in [0, 1), but is ",
                           ErrorValue{elastic_share}, "."});
   }
+  /// Force [N] or [N m] at the rate v and the deflection z.
   template <StateScalar T>
   T force(T const&, T const& v, std::array<T, 1> const& z, double) const {
     return -(z[0] * stiffness.value + rate<T>(v, z[0]) * damping.value + v * curve.viscous);
   }
+  /// Rate of the deflection z at the rate v.
   template <StateScalar T>
   std::array<T, 1> rates(T const&, T const& v, std::array<T, 1> const& z, double) const {
     return {rate<T>(v, z[0])};

@@ -65,7 +65,7 @@ struct Limit {
   T force(T const& x, T const& rate, double) const {
     return detail::force_of_stops(lower, upper, stop(), x, rate);
   }
-  /// Energy stored in the stops [J].
+  /// Energy stored in the stops at the coordinate x [J].
   template <StateScalar T>
   T potential(T const& x, double) const {
     T const above = detail::positive_part(T(x - upper)), below = detail::positive_part(T(lower - x));
@@ -95,7 +95,7 @@ struct Backlash {
   T force(T const& x, T const& rate, double t) const {
     return limit().template force<T>(x, rate, t);
   }
-  /// Energy stored in the stops [J].
+  /// Energy stored in the stops at the coordinate x [J].
   template <StateScalar T>
   T potential(T const& x, double t) const {
     return limit().potential(x, t);
@@ -124,7 +124,7 @@ struct BumpStop {
   T force(T const& x, T const& rate, double) const {
     return detail::force_of_stops(lower, upper, stop(), x, rate);
   }
-  /// Energy stored in the stops [J].
+  /// Energy stored in the stops at the coordinate x [J].
   double potential(double x, double) const {
     return stop().potential(x > upper ? x - upper : x < lower ? lower - x : 0.0);
   }

@@ -15,7 +15,7 @@ concept FollowsReaction = ForceElement<F> && requires { requires F::multipliers 
 /// Adapter of an element that follows a reaction: an element for constant multipliers λ of type T.
 template <FollowsReaction F, StateScalar T>
 struct AtMultipliers {
-  static constexpr int markers = F::markers, states = states_of<F>();
+  static constexpr int markers = F::markers, states = states_of<F>();  ///< those of F
   static constexpr bool is_load = F::is_load;
   static constexpr MarkerKind needs = F::needs;
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<F>();

@@ -73,7 +73,7 @@ struct StickingResistance {
     T const trial = z[0] * stiffness.value + v * damping.value;
     return trial * detail::held_share<T>(T(trial * trial), limit);
   }
-  /// Rate of z.
+  /// Rate of z at the rate v, with the bound `limit` of the force.
   template <StateScalar T>
   std::array<T, 1> rates(T const& v, std::array<T, 1> const& z, T const& limit) const {
     return {(force<T>(v, z, limit) - z[0] * stiffness.value) * (1.0 / damping)};
@@ -94,8 +94,8 @@ struct ReactionFriction {
       !EliminatingPolicy<P>,
       "Friction that follows the reaction of a joint needs the policy Constraint, or a compliant policy such as "
       "Penalty or Bushing. Joints with eliminated coordinates have no multipliers within a step.");
-  static constexpr bool turns = C::motion == JointMotion::Kind::turn;
-  static constexpr int markers = 2, states = Resistance::states;
+  static constexpr bool turns = C::motion == JointMotion::Kind::turn;      ///< true for an angle
+  static constexpr int markers = 2, states = Resistance::states;           ///< two markers; states of the bristle
   static constexpr int multipliers = ConstrainingPolicy<P> ? J::rows : 0;  ///< number of multipliers λ
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = MarkerKind::frame;
@@ -119,7 +119,7 @@ struct ReactionFriction {
                           ": this friction follows the reaction of a joint. Apply it to the handle of "
                           "the joint instead of two markers."});
   }
-  /// Sets the joint, and the axis of its coordinate among the axes of the joint.
+  /// Sets the joint `followed`, and the index `axis_of_coordinate` of the axis of its coordinate.
   void follow(J const& followed, int axis_of_coordinate) {
     joint.emplace(followed);
     axis = axis_of_coordinate;

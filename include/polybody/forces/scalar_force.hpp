@@ -30,13 +30,13 @@ struct ScalarUnits {
       throw InvalidInput("value.not_positive", {ErrorObject{what}, part, " must be positive and finite, but is ",
                                                 ErrorValue{x}, " ", unit, "."});
   }
-  /// \throws InvalidInput unless `x` is finite and not negative.
+  /// \throws InvalidInput unless `x` is finite and not negative; `unit` is its unit.
   static void require_not_negative(double x, char const* unit, std::string_view what, std::string_view part) {
     if (!(x >= 0.0) || !std::isfinite(x))
       throw InvalidInput("value.negative", {ErrorObject{what}, part, " must be zero or positive, and finite, but is ",
                                             ErrorValue{x}, " ", unit, "."});
   }
-  /// \throws InvalidInput unless `x` is finite.
+  /// \throws InvalidInput unless `x` is finite; `unit` is its unit.
   static void require_finite(double x, char const* unit, std::string_view what, std::string_view part) {
     if (!std::isfinite(x))
       throw InvalidInput("value.not_finite",

@@ -41,7 +41,7 @@ struct SphericalFriction {
 /// the sliding friction, and ż = (R − σ₀ z)/σ₁ with the deflection z of a bristle in the axes of a [rad]. Compare
 /// `BristleFriction`.
 struct SphericalBristleFriction {
-  static constexpr int markers = 2, states = 3;
+  static constexpr int markers = 2, states = 3;  ///< two markers; the deflection of the bristle
   static constexpr bool is_load = false;
   static constexpr MarkerKind needs = MarkerKind::frame;
 

@@ -81,7 +81,7 @@ struct TableSpring {
   T force(T const& x, T const& rate, double) const {
     return -(table(x) + rate * damping);
   }
-  double potential(double x, double) const { return table.integral(x); }  ///< energy ∫₀ˣ f dx [J]
+  double potential(double x, double) const { return table.integral(x); }  ///< energy ∫₀ˣ f dx at x [J]
 };
 
 /// Damper by a table of the resisting force over the rate: Q = −f(ẋ). The table must pass through zero.

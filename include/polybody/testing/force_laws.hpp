@@ -164,6 +164,7 @@ struct ForceLaws {
         },
         1e-4);
   }
+  /// Frames with zero twists.
   static Frames at_rest(Frames f) {
     for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
     return f;

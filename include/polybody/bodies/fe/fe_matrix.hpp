@@ -33,7 +33,7 @@ struct FeNodes {
                                      " nodes of the file."});
     return i;
   }
-  /// Removes a node that belongs to no element, such as a reference point.
+  /// Removes the node `label`, which belongs to no element, such as a reference point.
   /// \throws InvalidInput if there is no such node.
   void remove(Index label) {
     Index const i = index(label);

@@ -26,7 +26,7 @@ struct HelicoidalPoint {
   ScrewMap<T> carry;       ///< Ad(exp(−ξd))
   ScrewMap<T> P1, P2;      ///< V = P₁ V₁ + P₂ V₂
 
-  /// Section at ξ of the element whose first node is at `first` in q.
+  /// Section at ξ = `position` of the element whose first node is at `first` in q.
   HelicoidalPoint(double position, std::span<T const> q, Index first) : xi(position) {
     Quaternion<T> const b = entries<4>(q, first + 10);
     set_rotation<T>(b, R2);

@@ -26,8 +26,8 @@ struct CircularArc : SimoVuQuoc {
   /// Function g = 1/s₁(φ²/4), s₁(x) = sin √x/√x, and its derivatives with respect to φ.
   template <class T>
   struct Growth {
-    T g, dg, ddg;  ///< g without unit, g′ [1/rad], g″ [1/rad²]
-    explicit Growth(T const& phi) {
+    T g, dg, ddg;                    ///< g without unit, g′ [1/rad], g″ [1/rad²]
+    explicit Growth(T const& phi) {  ///< at the angle φ [rad]
       detail::SineSeries<T> const s(0.25 * phi * phi);
       T const by_x = -(s.slope(1) / (s[1] * s[1]));
       T const by_xx = 2.0 * s.slope(1) * s.slope(1) / (s[1] * s[1] * s[1]) - s.second(1) / (s[1] * s[1]);

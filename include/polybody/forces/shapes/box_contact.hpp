@@ -58,12 +58,12 @@ struct SphereOnBox {
 struct CapsuleOnBox {
   static constexpr MarkerKind needs = MarkerKind::axis;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
-  static constexpr int most_points = 2;
-  Required<double> radius;   ///< radius of the capsule [m]
-  Required<double> length;   ///< distance of the centres of the capsule's ends [m]
-  Vec3 size = Vec3::Zero();  ///< (3) lengths of the edges of the box [m]; must be set
-  double rounding = 0.0;     ///< radius of the edges and corners of the box [m]
-  Required<double> taper;    ///< loss of depth along the capsule [m]; small compared with the penetration
+  static constexpr int most_points = 2;  ///< largest number of contact points
+  Required<double> radius;               ///< radius of the capsule [m]
+  Required<double> length;               ///< distance of the centres of the capsule's ends [m]
+  Vec3 size = Vec3::Zero();              ///< (3) lengths of the edges of the box [m]; must be set
+  double rounding = 0.0;                 ///< radius of the edges and corners of the box [m]
+  Required<double> taper;                ///< loss of depth along the capsule [m]; small compared with the penetration
 
   void check(std::string const& name) const {
     require_not_negative(radius, name, ": the radius of the capsule");
@@ -107,12 +107,12 @@ struct CapsuleOnBox {
 /// points).
 struct BoxOnBox {
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr int most_points = 32;
-  Vec3 size_a = Vec3::Zero();   ///< (3) lengths of the edges of box a [m]; must be set
-  Required<double> rounding_a;  ///< radius of the edges and corners of box a [m]
-  Vec3 size_b = Vec3::Zero();   ///< (3) lengths of the edges of box b [m]; must be set
-  Required<double> rounding_b;  ///< radius of the edges and corners of box b [m]
-  Required<double> taper;       ///< loss of depth along an edge [m]; small compared with the penetration
+  static constexpr int most_points = 32;  ///< largest number of contact points
+  Vec3 size_a = Vec3::Zero();             ///< (3) lengths of the edges of box a [m]; must be set
+  Required<double> rounding_a;            ///< radius of the edges and corners of box a [m]
+  Vec3 size_b = Vec3::Zero();             ///< (3) lengths of the edges of box b [m]; must be set
+  Required<double> rounding_b;            ///< radius of the edges and corners of box b [m]
+  Required<double> taper;                 ///< loss of depth along an edge [m]; small compared with the penetration
 
   void check(std::string const& name) const {
     detail::require_box(size_a, rounding_a, name, ": the size of the first box", ": the rounding of the first box");

@@ -72,12 +72,12 @@ struct CapsuleOnSphere {
 /// The sum of the radii must exceed the penetration.
 struct CapsuleOnCapsule {
   static constexpr MarkerKind needs = MarkerKind::axis;
-  static constexpr int most_points = 2;
-  Required<double> radius_a;  ///< radius of the capsule about marker a [m]
-  Required<double> length_a;  ///< distance of the centres of its ends [m]
-  Required<double> radius_b;  ///< radius of the capsule about marker b [m]
-  Required<double> length_b;  ///< distance of the centres of its ends [m]
-  Required<double> taper;     ///< loss of depth along capsule a [m]; small compared with the penetration
+  static constexpr int most_points = 2;  ///< largest number of contact points
+  Required<double> radius_a;             ///< radius of the capsule about marker a [m]
+  Required<double> length_a;             ///< distance of the centres of its ends [m]
+  Required<double> radius_b;             ///< radius of the capsule about marker b [m]
+  Required<double> length_b;             ///< distance of the centres of its ends [m]
+  Required<double> taper;                ///< loss of depth along capsule a [m]; small compared with the penetration
 
   void check(std::string const& name) const {
     require_not_negative(radius_a, name, ": the radius of the first capsule");

@@ -31,7 +31,7 @@ template <ContactGeometry... Gs>
 class Compound {
  public:
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr int most_points = (polybody::most_points<Gs>() + ... + 0);
+  static constexpr int most_points = (polybody::most_points<Gs>() + ... + 0);  ///< largest number of contact points
 
   explicit Compound(Placed<Gs>... shapes) : shapes_(std::move(shapes)...) {}  ///< geometry of these shapes
 

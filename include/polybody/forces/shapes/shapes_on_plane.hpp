@@ -33,9 +33,9 @@ void touch_plane(Vec<T, 3> const& centre, double radius, Frame<T> const& b, int 
 /// corners is a contact point with its own normal force. The corners are spheres of radius `rounding`.
 struct BoxOnPlane {
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr int most_points = 8;
-  Vec3 size = Vec3::Zero();  ///< (3) lengths of the edges [m]; must be set
-  double rounding = 0.0;     ///< radius of the edges and corners [m]
+  static constexpr int most_points = 8;  ///< largest number of contact points
+  Vec3 size = Vec3::Zero();              ///< (3) lengths of the edges [m]; must be set
+  double rounding = 0.0;                 ///< radius of the edges and corners [m]
 
   void check(std::string const& name) const {
     detail::require_box(size, rounding, name, ": the size of the box", ": the rounding of the box");
@@ -64,9 +64,9 @@ struct BoxOnPlane {
 struct CapsuleOnPlane {
   static constexpr MarkerKind needs = MarkerKind::axis;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
-  static constexpr int most_points = 2;
-  Required<double> radius;  ///< radius of the capsule [m]
-  Required<double> length;  ///< distance of the centres of the two ends [m]
+  static constexpr int most_points = 2;  ///< largest number of contact points
+  Required<double> radius;               ///< radius of the capsule [m]
+  Required<double> length;               ///< distance of the centres of the two ends [m]
 
   void check(std::string const& name) const {
     require_not_negative(radius, name, ": the radius of the capsule");
@@ -94,9 +94,9 @@ struct CapsuleOnPlane {
 template <int most = 16>
 struct PolyhedronOnPlane {
   static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr int most_points = most;
-  std::vector<Vec3> corners = {};  ///< (3) positions in the axes of marker a [m]; must be set
-  double rounding = 0.0;           ///< radius of the spheres about the corners [m]
+  static constexpr int most_points = most;  ///< largest number of contact points
+  std::vector<Vec3> corners = {};           ///< (3) positions in the axes of marker a [m]; must be set
+  double rounding = 0.0;                    ///< radius of the spheres about the corners [m]
 
   void check(std::string const& name) const {
     if (corners.empty() || corners.size() > std::size_t(most))
