@@ -141,7 +141,7 @@ double nearest_on_segment(Vec3 const& h, Vec3 const& m, Vec3 const& u, double ha
     if (slow || !(next > low && next < high)) next = 0.5 * (low + high);
     step = next - s;
     s = next;
-    if (std::abs(step) <= 1e-16 * half || high - low <= 1e-16 * half) break;
+    if (std::abs(step) <= 4e-16 * half || high - low <= 4e-16 * half) break;
   }
   return s;
 }
