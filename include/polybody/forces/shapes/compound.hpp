@@ -15,10 +15,13 @@ struct Placed {
   Placement place = {};    ///< position and axes of the shape of a, in the axes of marker a
   Placement partner = {};  ///< position and axes of the shape of b, in the axes of marker b
 };
+/// Type of the geometry from a constructor call.
 template <class G>
 Placed(G) -> Placed<G>;
+/// Type of the geometry from a constructor call.
 template <class G>
 Placed(G, Placement) -> Placed<G>;
+/// Type of the geometry from a constructor call.
 template <class G>
 Placed(G, Placement, Placement) -> Placed<G>;
 
