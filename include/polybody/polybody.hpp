@@ -11,6 +11,7 @@
 ///   polybody/film.hpp          films, pictures of modes, files for ParaView
 ///   polybody/study.hpp         parameter studies, checkpoints
 ///   polybody/vehicle.hpp       tracked vehicles
+///   polybody/urdf.hpp          models from URDF files, with liburdfdom
 ///   polybody/solvers.hpp       further linear solvers
 ///   polybody/testing.hpp       test suites for user-defined bodies, joints and integrators
 
