@@ -50,9 +50,10 @@ struct CircularArc : SimoVuQuoc {
     static constexpr int reach = 2;
     /// Index of the coordinate of node j that shape k reads.
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
+    /// Parameters in the middle of the element, because the strains are those of the whole element.
     template <class T = double>  // compiled only if used
-    static Mat<T, 5, 2> map(double xi, double l) {
-      ShapeValues<2> const n = linear_shape(xi, l);
+    static Mat<T, 5, 2> map(double, double l) {
+      ShapeValues<2> const n = linear_shape(0.5, l);
       Mat<T, 5, 2> p;
       for (int j = 0; j < 2; ++j) {
         p(0, j) = p(1, j) = p(3, j) = n.ds[std::size_t(j)];
