@@ -17,10 +17,12 @@
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/differential.hpp>
+#include <polybody/forces/limits.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/forces/motors.hpp>
 #include <polybody/forces/normal_force.hpp>
 #include <polybody/forces/servo.hpp>
+#include <polybody/forces/spring_laws.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/gears.hpp>
@@ -60,6 +62,10 @@ static_assert(ForceElement<Contact<SphereOnPlane>> && HasOwnStiffness<Contact<Sp
 static_assert(NormalForce<SpringDamperContact> && NormalForce<HertzContact> && NormalForce<HuntCrossleyContact>);
 static_assert(ForceElement<BeltAndPulley<2>> && HasStates<BeltAndPulley<2>>);
 static_assert(ForceElement<Differential> && HasStatePotential<Differential>);
+static_assert(ScalarLaw<LinearSpring> && ScalarLaw<TwoSlopeSpring> && ScalarLaw<TableSpring> && ScalarLaw<TableDamper>);
+static_assert(ScalarLaw<Rope> && ScalarLaw<Winch<Ramp>> && ScalarLaw<FunctionSpring<LinearLaw>>);
+static_assert(ScalarLaw<Limit> && ScalarLaw<Backlash> && ScalarLaw<BumpStop>);
+static_assert(ForceElement<JointLimit> && HasPotential<JointLimit> && HasStatePotential<TorsionalSpringDamper>);
 static_assert(ScalarLaw<Servo<>> && ScalarLaw<PidServo<>> && ScalarLaw<RateLimited<PidServo<>>>);
 static_assert(ScalarLaw<DcMotor<>> && ScalarLaw<TorqueSpeedCurve<>>);
 static_assert(ForceElement<PointForce<>> && ForceElement<PointMoment<>>);

@@ -27,22 +27,20 @@ struct ScalarUnits {
   /// the parameter.
   static void require_positive(double x, char const* unit, std::string_view what, std::string_view part) {
     if (!(x > 0.0) || !std::isfinite(x))
-      refuse("value.not_positive", " must be positive and finite", x, unit, what, part);
+      throw InvalidInput("value.not_positive", {ErrorObject{what}, part, " must be positive and finite, but is ",
+                                                ErrorValue{x}, " ", unit, "."});
   }
   /// \throws InvalidInput unless `x` is finite and not negative.
   static void require_not_negative(double x, char const* unit, std::string_view what, std::string_view part) {
     if (!(x >= 0.0) || !std::isfinite(x))
-      refuse("value.negative", " must be zero or positive, and finite", x, unit, what, part);
+      throw InvalidInput("value.negative", {ErrorObject{what}, part, " must be zero or positive, and finite, but is ",
+                                            ErrorValue{x}, " ", unit, "."});
   }
   /// \throws InvalidInput unless `x` is finite.
   static void require_finite(double x, char const* unit, std::string_view what, std::string_view part) {
-    if (!std::isfinite(x)) refuse("value.not_finite", " must be finite", x, unit, what, part);
-  }
-
- private:
-  [[noreturn, gnu::cold]] static void refuse(char const* code, char const* range, double x, char const* unit,
-                                             std::string_view what, std::string_view part) {
-    throw InvalidInput(code, {ErrorObject{what}, part, range, ", but is ", ErrorValue{x}, " ", unit, "."});
+    if (!std::isfinite(x))
+      throw InvalidInput("value.not_finite",
+                         {ErrorObject{what}, part, " must be finite, but is ", ErrorValue{x}, " ", unit, "."});
   }
 };
 

@@ -178,8 +178,8 @@ struct Winch {
     Motion const s = reeled(t);
     if (!(length - s.value > 0.0))
       throw InvalidInput("winch.length",
-                         {ErrorObject{"Winch"}, ": the reeled length must be less than the length of ", length.value,
-                          " m, but is ", ErrorValue{s.value}, " m at t = ", ErrorTime{t}, " s."});
+                         {ErrorObject{"Winch"}, ": the value of the reeled length must be less than the length of ",
+                          length.value, " m, but is ", ErrorValue{s.value}, " m at t = ", ErrorTime{t}, " s."});
     return {length - s.value, -s.rate, -s.acceleration};
   }
   /// Force Q [N] at the distance x [m] with the rate `rate` and the time t [s].

@@ -4,6 +4,8 @@
 /// restitution.
 
 #include <memory>
+#include <numbers>
+#include <string_view>
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/joint_position.hpp>
@@ -25,6 +27,11 @@ struct LimitImpact {
                                          "\": the lower limit must be less than the upper limit, and one of them "
                                          "finite, but they are ",
                                          ErrorValue{lower}, " and ", upper, " ", unit, "."});
+    for (double const limit : {lower, upper})
+      if (std::string_view(unit) == "rad" && std::isfinite(limit) && !(std::abs(limit) < std::numbers::pi))
+        throw InvalidInput("limit.beyond_half_a_turn",
+                           {"\"", ErrorObject{name}, "\": a limit of an angle must lie between -pi and pi, but is ",
+                            ErrorValue{limit}, " rad."});
     if (!(restitution >= 0.0 && restitution <= 1.0))
       throw InvalidInput("limit.restitution",
                          {"\"", ErrorObject{name}, "\": the coefficient of restitution must lie in [0, 1], but is ",
@@ -97,16 +104,9 @@ class ImpactOfJoint {
   LimitImpact limit_;
 };
 
-}  // namespace detail
-
-/// Event of a run: impact at a limit of a joint's angle or translation. The rate of the coordinate jumps from ẋ to −e
-/// ẋ. The jump of all velocities is due to an impulse between the two bodies of the joint. It satisfies the constraint
-/// equations and conserves the momentum of free bodies. If impacts accumulate, the joint rests at the limit until the
-/// motion leaves it. An angle without limit on one side must not exceed half a turn. The model must outlive the event
-/// and must not change afterwards.
-/// \throws InvalidInput for invalid limits and for a handle of another model.
-template <class M, class J>
-Event impact_at_limit(M const& model, ElementHandle<J> const& joint, LimitImpact const& limit) {
+/// Event of an impact at a limit of `joint` in the model of `system`.
+template <class J>
+[[gnu::cold]] Event impact_in(System system, ElementHandle<J> const& joint, LimitImpact const& limit) {
   using G = typename J::Geometry;
   static_assert(HasJointAngle<G> || HasJointTranslation<G>,
                 "impact_at_limit needs a joint that permits one rotation or one translation, such as Revolute or "
@@ -114,16 +114,29 @@ Event impact_at_limit(M const& model, ElementHandle<J> const& joint, LimitImpact
   static_assert(!HasFreeDirections<G> || !HasJointAngle<G> || !HasJointTranslation<G>,
                 "impact_at_limit needs a joint with one free motion. A Cylindrical has a rotation and a translation.");
   constexpr auto kind = HasJointAngle<G> ? JointMotion::Kind::turn : JointMotion::Kind::slide;
-  System system(model, with<Capabilities::motion>);
   Index const index = index_of_joint(system.layout(), joint);
-  std::string const name = system.layout().joints[std::size_t(index)].name;
-  limit.check(name, kind == JointMotion::Kind::turn ? "rad" : "m");
-  int const axis = detail::axis_of_joint<J>(system.layout().joints[std::size_t(index)], kind);
-  auto const impact = std::make_shared<detail::ImpactOfJoint<>>(std::move(system), index, kind, axis, limit);
-  return {.name = "impact at a limit of \"" + name + "\"",
+  JointLayout const& place = system.layout().joints[std::size_t(index)];
+  limit.check(place.name, kind == JointMotion::Kind::turn ? "rad" : "m");
+  std::string const name = "impact at a limit of \"" + place.name + "\"";
+  int const axis = axis_of_joint<J>(place, kind);
+  auto const impact = std::make_shared<ImpactOfJoint<>>(std::move(system), index, kind, axis, limit);
+  return {.name = name,
           .value = [impact](State const& x) { return impact->gap(x); },
           .action = [impact](State& x) { impact->strike(x); },
           .rests = true};
+}
+
+}  // namespace detail
+
+/// Event of a run: impact at a limit of a joint's angle or translation. The rate of the coordinate jumps from ẋ to −e
+/// ẋ. The jump of all velocities is due to an impulse between the two bodies of the joint. It satisfies the constraint
+/// equations and conserves the momentum of free bodies. If impacts accumulate, the joint rests at the limit until the
+/// motion leaves it. The angle must stay within (−π, π). The model must outlive the event and must not change
+/// afterwards.
+/// \throws InvalidInput for invalid limits and for a handle of another model.
+template <class M, class J>
+Event impact_at_limit(M const& model, ElementHandle<J> const& joint, LimitImpact const& limit) {
+  return detail::impact_in(System(model, with<Capabilities::motion>), joint, limit);
 }
 /// Deleted: a temporary model would not outlive the event.
 template <class M, class J>

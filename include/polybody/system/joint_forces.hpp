@@ -92,22 +92,28 @@ inline void turn_marker(ModelParts& parts, Index published, int k) {
   parts.ground.push_back({turned, parts.markers});
 }
 
-/// Adds a force element on the markers of a joint, along or about axis k of the markers. \throws InvalidInput for a
-/// duplicate name and for invalid parameters or markers; the message names the force.
+/// Markers of a joint, and the index of the axis to which its coordinate refers.
+struct JointAxisMarkers {
+  std::array<Index, 2> markers;
+  int axis;
+};
+
+/// Adds a force element on the markers of a joint, along or about their axis. \throws InvalidInput for a duplicate name
+/// and for invalid parameters or markers; the message names the force.
 template <JointForce F, class... Bs>
 ElementHandle<F> add_joint_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
-                                 std::tuple<BodyPool<Bs>...>& bodies, std::array<Index, 2> markers, int k) {
+                                 std::tuple<BodyPool<Bs>...>& bodies, JointAxisMarkers joint) {
   name = checked_force_name(parts, pool, force, std::move(name));
-  (require_observed(std::get<BodyPool<Bs>>(bodies), markers[0], F::needs, name), ...);
-  (require_observed(std::get<BodyPool<Bs>>(bodies), markers[1], needs_of_second<F>(), name), ...);
+  (require_observed(std::get<BodyPool<Bs>>(bodies), joint.markers[0], F::needs, name), ...);
+  (require_observed(std::get<BodyPool<Bs>>(bodies), joint.markers[1], needs_of_second<F>(), name), ...);
   parts.origin.change();
-  if (k != 2)
-    for (Index& marker : markers) {
-      (turn_marker(parts, std::get<BodyPool<Bs>>(bodies), marker, k), ...);
-      turn_marker(parts, marker, k);
+  if (joint.axis != 2)
+    for (Index& marker : joint.markers) {
+      (turn_marker(parts, std::get<BodyPool<Bs>>(bodies), marker, joint.axis), ...);
+      turn_marker(parts, marker, joint.axis);
       marker = parts.markers++;
     }
-  return enter_force(parts, pool, force, std::move(name), markers);
+  return enter_force(parts, pool, force, std::move(name), joint.markers);
 }
 
 }  // namespace detail

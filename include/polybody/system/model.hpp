@@ -129,7 +129,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::require_joint_coordinate<kind, typename J::Geometry>();
     auto const& e = entry(joint);
     int const axis = detail::axis_of_coordinate(e, kind, name);
-    return detail::add_joint_force(parts_, pool_of<F>(), force, std::move(name), bodies_, {e.a, e.b}, axis);
+    return detail::add_joint_force(parts_, pool_of<F>(), force, std::move(name), bodies_, {{e.a, e.b}, axis});
   }
 
   /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a

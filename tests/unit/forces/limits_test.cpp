@@ -19,7 +19,7 @@ namespace polybody {
 using namespace laws;
 namespace limits_test {
 
-/// Law cases with narrow limits: random frames lie beyond one of them.
+/// Cases of the law suite. The limits are narrow, so that random frames are beyond one of them.
 struct LimitOnAngleCase {
   static auto force() { return JointLimit{{.lower = -0.01, .upper = 0.01, .stiffness = 80.0, .damping = 3.0}}; }
 };
@@ -39,8 +39,7 @@ struct BacklashCase {
 };
 struct BumpStopCase {
   static auto force() {
-    return on_translation(
-        BumpStop{.lower = -0.01, .upper = 0.01, .stiffness = 80.0, .exponent = 2.5, .damping = 0.01});
+    return on_translation(BumpStop{.lower = -0.01, .upper = 0.01, .stiffness = 80.0, .exponent = 2.5, .damping = 0.01});
   }
 };
 bool const forces_obey[] = {obeys<LimitOnAngleCase, ForceLaws>("LimitOnAngle"),
@@ -157,8 +156,7 @@ TEST(Limit, RefusesWrongNumbers) {
 
 TEST(Backlash, RefusesWrongNumbers) {
   auto const message = [](Backlash const& play) { return refusal([&] { on_angle(play).check("\"teeth\""); }); };
-  EXPECT_EQ(message({.play = 0.0, .stiffness = 1.0}),
-            "\"teeth\": the play must be positive and finite, but is 0 rad.");
+  EXPECT_EQ(message({.play = 0.0, .stiffness = 1.0}), "\"teeth\": the play must be positive and finite, but is 0 rad.");
   EXPECT_EQ(message({.play = 0.1, .centre = INFINITY, .stiffness = 1.0}),
             "\"teeth\": the centre of the play must be finite, but is inf rad.");
   EXPECT_TRUE(has(message({.play = 0.1, .stiffness = -1.0}), "the stiffness of the stop must be positive"));

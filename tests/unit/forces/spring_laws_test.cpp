@@ -24,20 +24,15 @@ MonotoneTable const progressive({{-1.0, -50.0}, {0.0, 0.0}, {1.0, 20.0}, {2.0, 9
 
 struct TwoSlopeCase {
   static auto force() {
-    return on_translation(TwoSlopeSpring{.stiffness_above = 80.0,
-                                         .stiffness_below = 30.0,
-                                         .damping_rising = 3.0,
-                                         .damping_falling = 1.0,
-                                         .free = 0.1});
+    return on_translation(TwoSlopeSpring{
+        .stiffness_above = 80.0, .stiffness_below = 30.0, .damping_rising = 3.0, .damping_falling = 1.0, .free = 0.1});
   }
 };
 struct TableSpringCase {
   static auto force() { return on_angle(TableSpring{.table = progressive, .damping = 2.0}); }
 };
 struct FunctionSpringCase {
-  static auto force() {
-    return on_distance(FunctionSpring{TabulatedLaw{.force = progressive, .damping = 2.0}});
-  }
+  static auto force() { return on_distance(FunctionSpring{TabulatedLaw{.force = progressive, .damping = 2.0}}); }
 };
 struct RopeCase {
   static auto force() { return on_distance(Rope{.stiffness = 80.0, .damping = 3.0, .length = 0.1}); }
@@ -49,10 +44,10 @@ struct WinchCase {
         .axial_stiffness = 80.0, .damping = 3.0, .length = 0.4, .reeled = {.target = 0.3, .duration = 2.0}});
   }
 };
-bool const forces_obey[] = {
-    obeys<TwoSlopeCase, ForceLaws>("TwoSlopeSpring"), obeys<TableSpringCase, ForceLaws>("TableSpring"),
-    obeys<FunctionSpringCase, ForceLaws>("FunctionSpring"), obeys<RopeCase, ForceLaws>("Rope"),
-    obeys<WinchCase, ForceLaws>("Winch")};
+bool const forces_obey[] = {obeys<TwoSlopeCase, ForceLaws>("TwoSlopeSpring"),
+                            obeys<TableSpringCase, ForceLaws>("TableSpring"),
+                            obeys<FunctionSpringCase, ForceLaws>("FunctionSpring"), obeys<RopeCase, ForceLaws>("Rope"),
+                            obeys<WinchCase, ForceLaws>("Winch")};
 
 TEST(TwoSlopeSpring, HasASlopeOnEachSide) {
   TwoSlopeSpring const spring{
@@ -107,8 +102,8 @@ struct Hung {
 };
 
 // The mass falls 0.8 m freely, stretches the rope and returns. Taut, with ω² = k/m, the static elongation s = g/ω² and
-// the speed v = √(2 g h), the elongation is s (1 − cos ωτ) + (v/ω) sin ωτ. It returns to zero after τ = 2 (π − φ)/ω with
-// tan φ = v/(ω s), and the mass rises to its start. A cycle lasts 2 √(2 h/g) + τ.
+// the speed v = √(2 g h), the elongation is s (1 − cos ωτ) + (v/ω) sin ωτ. It returns to zero after τ = 2 (π − φ)/ω
+// with tan φ = v/(ω s), and the mass rises to its start. A cycle lasts 2 √(2 h/g) + τ.
 TEST(Rope, GoesSlackAndTaut) {
   double const k = 800.0, g = 9.81, h = 0.8, w = std::sqrt(k / 2.0), s = g / (w * w), v = std::sqrt(2.0 * g * h);
   double const fall = std::sqrt(2.0 * h / g), taut = 2.0 * (std::numbers::pi - std::atan2(v, w * s)) / w;
@@ -116,8 +111,8 @@ TEST(Rope, GoesSlackAndTaut) {
   EnergyAudit audit(hung.model);
   double deepest = 0.0;
   DormandPrince<> const method{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12};
-  for (State const& now : simulate(hung.model, hung.x, method,
-                                   {.end_time = 3.0 * (2.0 * fall + taut), .step = 1e-3, .max_step = 2e-3})) {
+  for (State const& now :
+       simulate(hung.model, hung.x, method, {.end_time = 3.0 * (2.0 * fall + taut), .step = 1e-3, .max_step = 2e-3})) {
     audit.record(now);
     deepest = std::max(deepest, hung.depth(now));
   }
@@ -134,8 +129,7 @@ TEST(LinearSpring, OscillatesAboutItsEquilibrium) {
   model.apply(OnDistance<LinearSpring>{{.stiffness = 40.0, .free = 0.2}}, model.ground().at({0, 0, 0}),
               mass.at(Vec3(0, 0, 0)), "spring");
   double const period = 9.934588265796102, centre = 0.2 + 981.0 / 40.0;
-  for (auto const& [part, depth] :
-       {std::pair{0.25, centre}, {0.5, 2.0 * centre - 0.3}, {0.75, centre}, {1.0, 0.3}}) {
+  for (auto const& [part, depth] : {std::pair{0.25, centre}, {0.5, 2.0 * centre - 0.3}, {0.75, centre}, {1.0, 0.3}}) {
     State x = model.reference_state();
     simulate(model, x, Radau{.tolerance = 1e-11}, {.end_time = part * period, .step = 1e-2}).run();
     EXPECT_NEAR(-position(model, x, mass.at(Vec3(0, 0, 0)))[2], depth, 1e-6) << part;
@@ -166,7 +160,8 @@ TEST(Winch, ReportsItsBreakpoints) {
       {.axial_stiffness = 1e3, .length = 3.0, .reeled = {.target = 0.5, .duration = 0.77, .start = 0.3331}}};
   Hung<OnDistance<Winch<Ramp>>> hung(winch, 3.0);
   int met = 0;
-  for (State const& now : simulate(hung.model, hung.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 2.0, .step = 1e-2}))
+  for (State const& now :
+       simulate(hung.model, hung.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 2.0, .step = 1e-2}))
     met += std::abs(now.t - 0.3331) < 1e-12 || std::abs(now.t - 1.1031) < 1e-12;
   EXPECT_EQ(met, 2);
 }
@@ -174,10 +169,11 @@ TEST(Winch, ReportsItsBreakpoints) {
 TEST(Winch, RefusesToReelMoreThanItsLength) {
   Hung<OnDistance<Winch<Ramp>>> hung(
       {{.axial_stiffness = 1e3, .length = 1.0, .reeled = {.target = 2.0, .duration = 1.0}}}, 0.9);
-  EXPECT_TRUE(has(refusal([&] {
-                    simulate(hung.model, hung.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 1.0, .step = 1e-2}).run();
-                  }),
-                  "Winch: the reeled length must be less than the length of 1 m"));
+  EXPECT_TRUE(
+      has(refusal([&] {
+            simulate(hung.model, hung.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 1.0, .step = 1e-2}).run();
+          }),
+          "Winch: the value of the reeled length must be less than the length of 1 m"));
 }
 
 TEST(SpringLaws, RefuseWrongNumbers) {
