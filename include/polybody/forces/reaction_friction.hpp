@@ -2,7 +2,7 @@
 /// \file
 /// Friction in a joint that is proportional to the joint's reaction force: bearings and guides.
 
-#include <optional>
+#include <memory>
 
 #include <polybody/forces/bristle.hpp>
 #include <polybody/forces/reaction_force.hpp>
@@ -103,11 +103,11 @@ struct ReactionFriction {
   struct NoRadius {};                                                    ///< radius of a translation
   using Radius = std::conditional_t<turns, Required<double>, NoRadius>;  ///< radius of a rotation [m]
 
-  Required<double> coefficient;  ///< μ [1]
-  Radius radius = {};            ///< r [m], for a rotation
-  Resistance resistance;         ///< dependence on the rate
-  std::optional<J> joint = {};   ///< the joint; set by `Model::apply`
-  int axis = 2;                  ///< axis of the coordinate in the axes of the joint; set by `Model::apply`
+  Required<double> coefficient;         ///< μ [1]
+  Radius radius = {};                   ///< r [m], for a rotation
+  Resistance resistance;                ///< dependence on the rate
+  std::shared_ptr<J const> joint = {};  ///< the joint; set by `Model::apply`
+  int axis = 2;                         ///< axis of the coordinate in the axes of the joint; set by `Model::apply`
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of friction");
@@ -121,7 +121,7 @@ struct ReactionFriction {
   }
   /// Sets the joint `followed`, and the index `axis_of_coordinate` of the axis of its coordinate.
   void follow(J const& followed, int axis_of_coordinate) {
-    joint.emplace(followed);
+    joint = std::make_shared<J const>(followed);
     axis = axis_of_coordinate;
   }
 

@@ -157,7 +157,7 @@ double nearest_on_segment(Vec3 const& h, Vec3 const& m, Vec3 const& u, double ha
 /// this point is thus the exact derivative of the potential U(d_k). The loss ½ κ (s − s_k)² is at most τ.
 template <StateScalar T, class Visit>
 void touch_box(Vec3 const& h, Vec<T, 3> const& m, Vec<T, 3> const& u, SegmentOnBox const& shape, Visit&& visit) {
-  Vec3 const middle = values_of(m), along = values_of(u);
+  Vec3 const middle = polybody::values_of(m), along = polybody::values_of(u);
   double const reach = shape.radius + shape.rounding, kappa = shape.bend();
   for (int i = 0; i < 3; ++i)
     if (std::abs(middle[i]) - std::abs(along[i]) * shape.half >= h[i] + reach) return;
@@ -188,7 +188,7 @@ void touch_box(Vec3 const& h, Vec<T, 3> const& m, Vec<T, 3> const& u, SegmentOnB
 /// box [m].
 template <StateScalar T, class Visit>
 void touch_box(Vec3 const& h, Vec<T, 3> const& c, double radius, double rounding, Visit&& visit) {
-  Vec3 const at = values_of(c);
+  Vec3 const at = polybody::values_of(c);
   for (int i = 0; i < 3; ++i)
     if (std::abs(at[i]) >= h[i] + radius + rounding) return;
   BoxDistance<T> const from = distance_from<T>(h, c);
