@@ -56,23 +56,24 @@ Limit const buffer{.lower = -0.2, .upper = 0.3, .stiffness = 2e3, .damping = 20.
 /// not differentiable at the steps of a run.
 std::vector<Parameter> const parameters{{"mass [kg]", 1.0},
                                         {"stiffness [N m/rad]", 12.0},
-                                        {"limit [rad]", -0.8},
+                                        {"limit [rad]", 0.5},
                                         {"damping [N m s/rad]", 1.5},
                                         {"speed [rad/s]", 2.0}};
 
 template <class Policy>
 auto winder() {
   return [](std::span<double const> p) {
-    Winder<Policy> w(p[0], p[1], {.upper = p[2], .stiffness = 40.0, .damping = p[3]}, p[4]);
+    Winder<Policy> w(p[0], p[1], {.lower = p[2], .stiffness = 40.0, .damping = p[3]}, p[4]);
     auto const tip = w.second.at(Vec3(0.5, 0, 0));
     auto const end = [tip](auto const& m, auto const& x) { return position(m, x, tip)[0] + 0.1 * x.v[4]; };
     auto const way = [tip](auto const& m, auto const& x) { return position(m, x, tip)[2]; };
     Scenario<Arms<Policy>> scenario{
-        std::move(w.model), w.start, {.end_time = 1.2, .step = 1e-3}, {{"end", end}, {"way", way}}};
+        std::move(w.model), w.start, {.end_time = 0.8, .step = 1e-3}, {{"end", end}, {"way", way}}};
     return with_objective(std::move(scenario), end, way);
   };
 }
 
+// Angles: Runge–Kutta method of a separate script, from Lagrange's equations of the two angles, steps of 20 µs.
 TEST(ScalarForces, AreWoundByMoreThanATurnAndMeetTheirStop) {
   Winder<Constraint> w(1.0, 12.0, buffer, 2.0);
   State x = w.start;
@@ -85,7 +86,8 @@ TEST(ScalarForces, AreWoundByMoreThanATurnAndMeetTheirStop) {
     most = std::max(most, joint_angle(w.model, now, w.elbow));
     least = std::min(least, joint_angle(w.model, now, w.elbow));
   }
-  EXPECT_GT(turns.angle(), 7.0);
+  EXPECT_NEAR(turns.angle(), 14.390811, 1e-5);
+  EXPECT_NEAR(joint_angle(w.model, x, w.elbow), 0.299381, 1e-5);
   EXPECT_NEAR(w.model.states(x, w.spring)[0], turns.angle(), 1e-6);
   EXPECT_GT(most, 0.3);
   EXPECT_LT(least, -0.2);
@@ -93,16 +95,21 @@ TEST(ScalarForces, AreWoundByMoreThanATurnAndMeetTheirStop) {
 }
 
 TEST(ScalarForces, StopOfTheDerivativesIsPressed) {
-  Winder<Constraint> w(1.0, 12.0, {.upper = -0.8, .stiffness = 40.0, .damping = 1.5}, 2.0);
+  Winder<Constraint> w(1.0, 12.0, {.lower = 0.5, .stiffness = 40.0, .damping = 1.5}, 2.0);
   State x = w.start;
-  double most = -10.0, least = 1e3;
-  for (State const& now : simulate(w.model, x, GeneralisedAlpha{}, {.end_time = 1.2, .step = 1e-3})) {
-    double const angle = joint_angle(w.model, now, w.elbow), rate = joint_angle_rate(w.model, now, w.elbow);
-    most = std::max(most, angle);
-    least = std::min(least, 40.0 * (angle + 0.8) + 1.5 * rate);
+  TurnCounter turns(w.model, w.shoulder);
+  EnergyAudit audit(w.model);
+  double least = 1e3;
+  for (State const& now : simulate(w.model, x, GeneralisedAlpha{.rho_inf = 1.0}, {.end_time = 0.8, .step = 1e-4})) {
+    turns.record(now);
+    audit.record(now);
+    least = std::min(least,
+                     40.0 * (0.5 - joint_angle(w.model, now, w.elbow)) - 1.5 * joint_angle_rate(w.model, now, w.elbow));
   }
-  EXPECT_GT(least, 0.5);
-  EXPECT_LT(most, 3.0);
+  EXPECT_NEAR(least, 12.3370, 1e-3);  // force of the stop: the same script
+  EXPECT_NEAR(turns.angle(), 9.4437267, 1e-5);
+  EXPECT_NEAR(joint_angle(w.model, x, w.elbow), 0.1684249, 1e-5);
+  EXPECT_LT(audit.relative(), 1e-6);
 }
 
 TEST(ScalarForces, DerivativesAreThoseOfWholeRuns) {
