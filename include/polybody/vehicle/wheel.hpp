@@ -254,7 +254,7 @@ struct Wheel {
         jacobian[2] = regular ? -j[2] / determinant : 0.0;
         jacobian[3] = regular ? j[0] / determinant : 0.5;
         double const dx = x - c.place[0].v, dy = y - c.place[1].v;
-        double step_x = jacobian[0] * dx + jacobian[1] * dy, step_y = jacobian[2] * dx + jacobian[3] * dy;
+        double const step_x = jacobian[0] * dx + jacobian[1] * dy, step_y = jacobian[2] * dx + jacobian[3] * dy;
         change = std::hypot(step_x, step_y);
         double const share = change > radius ? radius / change : 1.0;
         x -= share * step_x;
