@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -123,6 +124,9 @@ template <class T>
 void each_hostile(T&, std::string const&, Changed const&) {}
 template <class F>
 void each_hostile(std::function<F>&, std::string const&, Changed const&) {}
+/// Shared constant objects are skipped; the model sets them.
+template <class T>
+void each_hostile(std::shared_ptr<T const>&, std::string const&, Changed const&) {}
 template <HasWords T>
 void each_hostile(T& x, std::string const&, Changed const& changed);
 template <class T>
