@@ -71,6 +71,7 @@ TEST(HostileParameters, OfBars) {
   tried +=
       try_bars<planar::AncfCable<>>("planar::AncfCable", [](Bar const& b) { return planar::AncfCable<>::from(b, 2); });
   tried += try_bars<planar::Lrvf>("planar::Lrvf", [](Bar const& b) { return planar::Lrvf::from(b, 2); });
+  tried += try_bars<planar::Se3Beam>("planar::Se3Beam", [](Bar const& b) { return planar::Se3Beam::from(b, 2); });
   tried += try_bars<Ffr>("Ffr", [](Bar const& b) { return Ffr::from(b, 2); });
   tried += try_bars<planar::Ffr>("planar::Ffr", [](Bar const& b) { return planar::Ffr::from(b, 2); });
   std::cout << tried << " numbers of bars\n";

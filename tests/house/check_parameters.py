@@ -26,6 +26,7 @@ NOTHING_TO_TRY = {
     "HermiteCable": "it looks at a Bar, which is tried through every body",
     "CircularArc": "it looks at a Bar, which is tried through every body",
     "SimoVuQuoc": "it looks at a Bar, which is tried through every body",
+    "CircularArc": "it looks at a Bar, which is tried through every body",
     "BumpCourse": "its constructor refuses: tests/unit/vehicle/terrain_test.cpp",
     "RoadProfile": "its constructor refuses: tests/unit/vehicle/terrain_test.cpp",
     "HeightField": "its constructor refuses: tests/unit/vehicle/terrain_test.cpp",
