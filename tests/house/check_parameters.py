@@ -24,7 +24,6 @@ NOTHING_TO_TRY = {
     "Continuum": "it looks at a Bar, which is tried through every body",
     "ElasticLine": "it looks at a Bar, which is tried through every body",
     "HermiteCable": "it looks at a Bar, which is tried through every body",
-    "CircularArc": "it looks at a Bar, which is tried through every body",
     "SimoVuQuoc": "it looks at a Bar, which is tried through every body",
     "CircularArc": "it looks at a Bar, which is tried through every body",
     "BumpCourse": "its constructor refuses: tests/unit/vehicle/terrain_test.cpp",
