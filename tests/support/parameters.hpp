@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdlib>
 #include <functional>
-#include <memory>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <tuple>
