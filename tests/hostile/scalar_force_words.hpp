@@ -27,10 +27,11 @@ inline constexpr auto words_of<Winch<Law>> = words("axial stiffness", "damping",
 template <>
 inline constexpr auto words_of<Limit> = words("lower limit", "upper limit", "stiffness", "damping", "onset");
 template <>
-inline constexpr auto words_of<Backlash> = words("play", "centre", "stiffness", "damping", "onset");
+inline constexpr auto words_of<Backlash> = words("play|limit", "centre|limit", "stiffness", "damping", "onset");
 template <>
 inline constexpr auto words_of<BumpStop> = words("lower limit", "upper limit", "stiffness", "exponent", "damping");
 template <>
-inline constexpr auto words_of<LimitImpact> = words("lower limit", "upper limit", "restitution");
+inline constexpr auto words_of<LimitImpact> =
+    words("lower limit|a limit of an angle", "upper limit|a limit of an angle", "restitution");
 
 }  // namespace polybody

@@ -37,16 +37,18 @@ constexpr void require_joint_coordinate() {
 }
 
 /// Refuses at compile time a force F that follows another type of joint than J, or multipliers in a model that
-/// `eliminates` unknowns.
+/// `eliminates` unknowns. Returns true if F follows J.
 template <class F, class J, bool eliminates>
-constexpr void require_followed() {
-  static_assert(std::is_same_v<typename F::FollowedJoint, J>,
+constexpr bool require_followed() {
+  constexpr bool follows = std::is_same_v<typename F::FollowedJoint, J>;
+  static_assert(follows,
                 "This friction follows the reaction of another type of joint. Its first template argument must be the "
                 "type of the joint to which it is applied.");
   static_assert(
       !eliminates || F::multipliers == 0,
       "Friction that follows multipliers needs a model without eliminated unknowns: use Constraint instead of "
       "JointCoordinates and AncfLinear in all joints of the model.");
+  return follows;
 }
 
 /// Axis of a joint's coordinate among the axes of its markers. \throws InvalidInput naming the force if the joint has

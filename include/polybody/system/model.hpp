@@ -130,9 +130,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     auto const& e = entry(joint);
     int const axis = detail::axis_of_coordinate(e, kind, name);
     if constexpr (requires { typename F::FollowedJoint; }) {
-      detail::require_followed<F, J, eliminates>();
       F follower = force;
-      follower.follow(e.joint, axis);
+      if constexpr (detail::require_followed<F, J, eliminates>()) follower.follow(e.joint, axis);
       auto const handle =
           detail::add_joint_force(parts_, pool_of<F>(), follower, std::move(name), bodies_, {{e.a, e.b}, axis});
       pool_of<F>().back().row = e.row;

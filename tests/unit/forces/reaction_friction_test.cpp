@@ -177,7 +177,8 @@ void expect_braked(J const& joint, F const& force, I const& integrator, double s
   held({"bearing friction", "angular velocity of an unbalanced rotor [rad/s]", By::closed_form, "1/ω = 1/ω₀ + κ t",
         name},
        arm.rate(x), 1.0 / (1.0 / 20.0 + kappa * 2.0), tolerance);
-  EXPECT_LT(audit.relative(), tolerance < 1e-4 ? 1e-6 : 1e-2) << name;  // the bushing is loaded suddenly
+  // the trapezoidal rule with h = 5e-4 s; the bushing is loaded suddenly
+  EXPECT_LT(audit.relative(), tolerance < 1e-6 ? 1e-6 : tolerance < 1e-4 ? 1e-5 : 1e-2) << name;
   EXPECT_GT(audit.dissipated(), 1.0);
 }
 TEST(ReactionFriction, BrakesAnUnbalancedRotorAsInTheClosedForm) {

@@ -95,8 +95,8 @@ TEST(BristleFriction, ContinuesFromACheckpoint) {
   auto const file = std::filesystem::path(testing::TempDir()) / ("friction " + std::to_string(::getpid()));
   auto run = simulate(model, x, GeneralisedAlpha{}, options);
   for (State const& now : run)
-    if (now.t > 0.2) break;
-  EXPECT_GT(std::abs(x.v[3]), 1e-3);  // the deflection of the bristle
+    if (now.t > 0.05) break;
+  EXPECT_GT(x.v.tail<3>().norm(), 1e-3);  // the deflection of the bristle
   write_checkpoint(file, run.snapshot());
   run.run();
   resume(model, y, GeneralisedAlpha{}, options, read_checkpoint(file)).run();

@@ -99,15 +99,13 @@ class FeText {
   explicit FeText(std::string const& file) : file_(file), lines_(file, '\0') {}
 
   std::string const& file() const { return file_; }
-  Index line() const { return lines_.line() - (kept_ && got_ ? 1 : 0); }
+  Index line() const { return line_; }  ///< number of the last line that `next` has read, counted from 1
   /// Reads the next line; returns false at the end of the file.
   bool next(std::string& line) {
-    if (kept_) {
-      kept_ = false;
-      line = ahead_;
-      return got_;
-    }
-    return lines_.raw(line);
+    peek(line);
+    skip();
+    if (got_) line_ = lines_.line();
+    return got_;
   }
   /// Reads the next line with a word.
   bool next_filled(std::string& line) {
@@ -115,6 +113,8 @@ class FeText {
       if (!trimmed(line).empty()) return true;
     return false;
   }
+  /// Skips the line that `peek` has kept.
+  void skip() { kept_ = false; }
   /// Reads the next line and keeps it for `next`.
   bool peek(std::string& line) {
     if (!kept_) got_ = lines_.raw(ahead_);
@@ -147,6 +147,7 @@ class FeText {
   std::string file_;
   NumberReader lines_;
   std::string ahead_;
+  Index line_ = 0;
   bool kept_ = false, got_ = false;
 };
 

@@ -51,7 +51,7 @@ class NastranBulk {
     line.resize(line.find_last_not_of(" \r\v\f") + 1);
   }
   bool peek_line(std::string& line) {
-    for (; text_.peek(line); text_.next(line)) {
+    for (; text_.peek(line); text_.skip()) {
       clean(line);
       if (!line.empty()) return true;
     }
