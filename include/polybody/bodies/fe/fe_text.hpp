@@ -104,7 +104,7 @@ class FeText {
   bool next(std::string& line) {
     peek(line);
     skip();
-    if (got_) line_ = lines_.line();
+    if (got_ || line_ == 0) line_ = lines_.line();
     return got_;
   }
   /// Reads the next line with a word.
