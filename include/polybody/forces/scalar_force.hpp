@@ -93,22 +93,21 @@ Secant<N> positive_part(Secant<N> const& x) {
 
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 
-/// Rotation of b about the third axis of a, in (−π, π].
-struct AngleBetween {
+/// Rotation of b about the third axis of a: in (−π, π], or with its full turns.
+template <bool full_turns>
+struct RotationBetween {
   static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::frame;
   static constexpr JointMotion::Kind motion = JointMotion::Kind::turn;
-  static constexpr ScalarUnits units = {"rad", "rad/s", "N m", "N m/rad", "N m s/rad", std::numbers::pi};
-  static constexpr bool counts_turns = false;
+  static constexpr ScalarUnits units = {"rad",     "rad/s",     "N m",
+                                        "N m/rad", "N m s/rad", full_turns ? endless : std::numbers::pi};
+  static constexpr bool counts_turns = full_turns;
   template <StateScalar T>
   static ConstraintTerms<1, T> terms(Frame<T> const& a, Frame<T> const& b) {
     return constraint_functions::angle(constraint_functions::turned(a, b));
   }
 };
-/// Rotation of b about the third axis of a with its full turns.
-struct TurnsBetween : AngleBetween {
-  static constexpr ScalarUnits units = {"rad", "rad/s", "N m", "N m/rad", "N m s/rad", endless};
-  static constexpr bool counts_turns = true;
-};
+using AngleBetween = RotationBetween<false>;
+using TurnsBetween = RotationBetween<true>;
 /// Translation of b along the third axis of a.
 struct TranslationBetween {
   static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::point;
