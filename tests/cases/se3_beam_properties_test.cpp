@@ -14,7 +14,7 @@
 #include <polybody/run/simulate.hpp>
 
 #include "support/spatial_cantilever.hpp"
-#include "support/spatial_lrvf.hpp"
+#include "support/straight_se3_bar.hpp"
 
 using namespace polybody;
 
@@ -25,19 +25,6 @@ using Rod = SpatialCantilever<Se3Beam>;
 
 double const length = 1.3;
 Vec6 const stiffness = (Vec6() << 900, 300, 350, 25, 60, 40).finished();
-
-Bar straight_bar() {
-  Bar bar = spatial_lrvf_bar();
-  bar.placement = {};
-  return bar;
-}
-/// Section at the arc length s of a rod with the constant strains (Γ, K), and its first section at the origin.
-Placement helix(Vec6 const& strains, double s) {
-  Vec3 const pull = (Vec3::UnitX() + strains.head<3>()) * s, turn = strains.tail<3>() * s;
-  auto const h = exp_se3<double>({pull, turn});
-  return {.origin = h.r, .axes = h.A};
-}
-Vec6 six(double a, double b, double c, double d, double e, double f) { return (Vec6() << a, b, c, d, e, f).finished(); }
 
 // ---- equilibrium of constant strain
 

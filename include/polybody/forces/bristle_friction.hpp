@@ -11,8 +11,8 @@ namespace polybody {
 /// deflection z of the bristle and of a slip, as in elasto-plastic friction [Dupont, Hayward, Armstrong & Altpeter
 /// 2002]. The friction force on body a is −R with
 ///   R = σ₀ z + σ₁ v if |σ₀ z + σ₁ v| ≤ μ N, otherwise the vector of this direction with the length μ N;
-///   ż = (R − σ₀ z)/σ₁,
-/// where v is the tangential velocity and N the normal force. In sticking, ż = v: no slip occurs below the limit, also
+///   ż = (R − σ₀ z)/σ₁.
+/// The tangential velocity is v, and the normal force is N. In sticking, ż = v: no slip occurs below the limit, also
 /// under an oscillating load. In sliding, R is Coulomb's friction. A bristle without contact relaxes with the time
 /// constant σ₁/σ₀. Steps of an explicit integrator must be shorter than about 2 σ₁/σ₀.
 struct BristleFriction {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "support/refusal.hpp"
-#include "support/spatial_lrvf.hpp"
+#include "support/straight_se3_bar.hpp"
 
 namespace polybody {
 namespace se3_beam_test {
@@ -15,24 +15,12 @@ using std::numbers::pi;
 double const length = 1.3;
 Vec6 const stiffness = (Vec6() << 900, 300, 350, 25, 60, 40).finished();
 
-Bar straight_bar() {
-  Bar bar = spatial_lrvf_bar();
-  bar.placement = {};
-  return bar;
-}
 std::span<double> numbers_of(VecX& x) { return {x.data(), std::size_t(x.size())}; }
 VecX reference_of(Se3Beam const& beam) {
   VecX q(beam.coordinates());
   beam.reference(numbers_of(q));
   return q;
 }
-/// Section at the arc length s of a rod with the constant strains (Γ, K), and its first section at the origin.
-Placement helix(Vec6 const& strains, double s) {
-  Vec3 const pull = (Vec3::UnitX() + strains.head<3>()) * s, turn = strains.tail<3>() * s;
-  auto const h = exp_se3<double>({pull, turn});
-  return {.origin = h.r, .axes = h.A};
-}
-Vec6 six(double a, double b, double c, double d, double e, double f) { return (Vec6() << a, b, c, d, e, f).finished(); }
 
 // Stretch, shear, twist and bending in any combination: each mesh measures the strains of a helix exactly.
 TEST(Se3Beam, ConstantStrainsAreExactWithAnyMesh) {

@@ -4,28 +4,18 @@
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"
+#include "support/tyres.hpp"
 
 namespace polybody::tyre_test {
 
 static_assert(TyreLaw<LinearTyre> && TyreLaw<MagicFormula> && !TyreLaw<MagicCurve>);
-
-LinearTyre const linear{.longitudinal_stiffness = 6e4,
-                        .cornering_stiffness = 4e4,
-                        .longitudinal_friction = 1.1,
-                        .lateral_friction = 0.9,
-                        .camber_stiffness = 2e3,
-                        .trail = 0.03};
-MagicFormula const magic{.longitudinal = MagicCurve{10.0, 1.9, 1.0, 0.97},
-                         .lateral = MagicCurve{12.3, 1.3, 0.92, -0.7},
-                         .aligning = {11.9, 2.4, -0.013, -2.6},
-                         .camber_factor = 0.05};
 
 TyreForce<double> of(auto const& law, double kappa, double tangent, double camber, double load) {
   return law.template force<double>({kappa, tangent, camber, load});
 }
 
 TEST(LinearTyre, IsLinearWithinTheEllipse) {
-  auto const f = of(linear, 0.01, -0.02, 0.1, 4e3);
+  auto const f = of(linear_tyre, 0.01, -0.02, 0.1, 4e3);
   EXPECT_NEAR(f.x, 600.0, 1e-10);
   EXPECT_NEAR(f.y, -800.0 - 200.0, 1e-10);
   EXPECT_NEAR(f.aligning, 0.03 * 1000.0, 1e-12);
@@ -33,20 +23,21 @@ TEST(LinearTyre, IsLinearWithinTheEllipse) {
 
 TEST(LinearTyre, SaturatesOnTheEllipse) {
   for (double const load : {100.0, 1e3, 3e3}) {
-    auto const f = of(linear, -0.3, 0.2, 0.0, load);
+    auto const f = of(linear_tyre, -0.3, 0.2, 0.0, load);
     EXPECT_NEAR(std::hypot(f.x / 1.1, f.y / 0.9), load, 1e-10 * load);
     EXPECT_NEAR(f.x / f.y, -0.3 * 6e4 / (0.2 * 4e4), 1e-12);  // the direction of the linear forces
   }
-  EXPECT_NEAR(of(linear, -1.0, 0.0, 0.0, 2e3).x, -1.1 * 2e3, 1e-9);
-  EXPECT_NEAR(of(linear, 0.0, 1.0, 0.0, 2e3).y, 0.9 * 2e3, 1e-9);
+  EXPECT_NEAR(of(linear_tyre, -1.0, 0.0, 0.0, 2e3).x, -1.1 * 2e3, 1e-9);
+  EXPECT_NEAR(of(linear_tyre, 0.0, 1.0, 0.0, 2e3).y, 0.9 * 2e3, 1e-9);
 }
 
 TEST(LinearTyre, IsContinuousAtTheEllipseAndWithoutLoad) {
   double const edge = 0.9 * 3e3 / 4e4;  // tan α at which F_y = μ_y N
-  EXPECT_NEAR(of(linear, 0.0, edge * (1.0 - 1e-9), 0.0, 3e3).y, of(linear, 0.0, edge * (1.0 + 1e-9), 0.0, 3e3).y, 1e-5);
-  auto const f = of(linear, 0.2, 0.1, 0.0, 1e-6);
+  EXPECT_NEAR(of(linear_tyre, 0.0, edge * (1.0 - 1e-9), 0.0, 3e3).y,
+              of(linear_tyre, 0.0, edge * (1.0 + 1e-9), 0.0, 3e3).y, 1e-5);
+  auto const f = of(linear_tyre, 0.2, 0.1, 0.0, 1e-6);
   EXPECT_LT(std::hypot(f.x, f.y), 2e-6);
-  auto const none = of(linear, 0.2, 0.1, 0.0, 0.0);
+  auto const none = of(linear_tyre, 0.2, 0.1, 0.0, 0.0);
   EXPECT_EQ(std::hypot(none.x, none.y), 0.0);
 }
 
@@ -84,21 +75,21 @@ TEST(MagicFormula, AgreesWithPublishedCoefficients) {
 // y = D at the peak; y(x)/x → B C D at zero.
 TEST(MagicFormula, PureSlipGivesTheCurves) {
   for (double const s : {-1.0, -0.1, 1e-12, 0.004, 0.3}) {
-    auto const along = of(magic, s, 0.0, 0.0, 3e3), side = of(magic, 0.0, s, 0.0, 3e3);
-    EXPECT_NEAR(along.x, 3e3 * magic.longitudinal.value.value(s), 1e-11 * 3e3);
-    EXPECT_NEAR(side.y, 3e3 * magic.lateral.value.value(s), 1e-11 * 3e3);
-    EXPECT_NEAR(side.aligning, 3e3 * magic.aligning.value(s), 1e-11 * 3e3);
+    auto const along = of(magic_tyre, s, 0.0, 0.0, 3e3), side = of(magic_tyre, 0.0, s, 0.0, 3e3);
+    EXPECT_NEAR(along.x, 3e3 * magic_tyre.longitudinal.value.value(s), 1e-11 * 3e3);
+    EXPECT_NEAR(side.y, 3e3 * magic_tyre.lateral.value.value(s), 1e-11 * 3e3);
+    EXPECT_NEAR(side.aligning, 3e3 * magic_tyre.aligning.value(s), 1e-11 * 3e3);
     EXPECT_EQ(along.y, 0.0);
     EXPECT_EQ(side.x, 0.0);
   }
-  EXPECT_NEAR(of(magic, 1e-6, 0.0, 0.0, 1.0).x, 10.0 * 1.9 * 1e-6, 1e-14);
+  EXPECT_NEAR(of(magic_tyre, 1e-6, 0.0, 0.0, 1.0).x, 10.0 * 1.9 * 1e-6, 1e-14);
 }
 
 TEST(MagicFormula, CombinedSlipRemainsWithinTheEllipse) {
   double greatest = 0.0;
   for (double angle = 0.0; angle < 6.3; angle += 0.1)
     for (double s = 0.01; s < 2.0; s *= 1.3) {
-      auto const f = of(magic, s * std::cos(angle), s * std::sin(angle), 0.0, 2.0);
+      auto const f = of(magic_tyre, s * std::cos(angle), s * std::sin(angle), 0.0, 2.0);
       double const use = std::hypot(f.x / 1.0, f.y / 0.92) / 2.0;
       greatest = std::max(greatest, use);
       EXPECT_GE(f.x * std::cos(angle), -1e-12);  // both forces oppose the slip velocity
@@ -109,8 +100,8 @@ TEST(MagicFormula, CombinedSlipRemainsWithinTheEllipse) {
 }
 
 TEST(MagicFormula, CamberShiftsTheSlipAngle) {
-  EXPECT_NEAR(of(magic, 0.02, 0.03, 0.2, 3e3).y, of(magic, 0.02, 0.03 - 0.05 * 0.2, 0.0, 3e3).y, 1e-9);
-  EXPECT_LT(of(magic, 0.0, 0.0, 0.2, 3e3).y, 0.0);  // a wheel that leans to the right is pushed to the right
+  EXPECT_NEAR(of(magic_tyre, 0.02, 0.03, 0.2, 3e3).y, of(magic_tyre, 0.02, 0.03 - 0.05 * 0.2, 0.0, 3e3).y, 1e-9);
+  EXPECT_LT(of(magic_tyre, 0.0, 0.0, 0.2, 3e3).y, 0.0);  // a wheel that leans to the right is pushed to the right
 }
 
 // Sentences of invalid parameters.
@@ -121,29 +112,38 @@ TEST(TyreLaws, RefuseInvalidParameters) {
     EXPECT_TRUE(has(refusal([&] { law.check("tyre"); }), sentence));
   };
   refused(
-      linear, [](LinearTyre& t) { t.longitudinal_stiffness = 0.0; },
+      linear_tyre, [](LinearTyre& t) { t.longitudinal_stiffness = 0.0; },
       "tyre: the longitudinal stiffness of the tyre must be positive and finite, but is 0");
   refused(
-      linear, [](LinearTyre& t) { t.cornering_stiffness = -1.0; }, "the cornering stiffness of the tyre must be pos");
+      linear_tyre, [](LinearTyre& t) { t.cornering_stiffness = -1.0; },
+      "the cornering stiffness of the tyre must be pos");
   refused(
-      linear, [](LinearTyre& t) { t.longitudinal_friction = 0.0; }, "the longitudinal friction of the tyre must be");
+      linear_tyre, [](LinearTyre& t) { t.longitudinal_friction = 0.0; },
+      "the longitudinal friction of the tyre must be");
   refused(
-      linear, [&](LinearTyre& t) { t.lateral_friction = nan; }, "the lateral friction of the tyre must be positive");
-  refused(linear, [](LinearTyre& t) { t.camber_stiffness = -2.0; }, "the camber stiffness of the tyre must be zero or");
-  refused(linear, [&](LinearTyre& t) { t.trail = nan; }, "the trail of the tyre must be finite");
+      linear_tyre, [&](LinearTyre& t) { t.lateral_friction = nan; },
+      "the lateral friction of the tyre must be positive");
   refused(
-      magic, [](MagicFormula& t) { t.longitudinal.value.B = 0.0; }, "the stiffness factor B of the longitudinal curve");
-  refused(magic, [](MagicFormula& t) { t.lateral.value.C = -1.3; }, "the shape factor C of the lateral curve must be");
+      linear_tyre, [](LinearTyre& t) { t.camber_stiffness = -2.0; },
+      "the camber stiffness of the tyre must be zero or");
+  refused(linear_tyre, [&](LinearTyre& t) { t.trail = nan; }, "the trail of the tyre must be finite");
   refused(
-      magic, [](MagicFormula& t) { t.lateral.value.D = -1.0; },
+      magic_tyre, [](MagicFormula& t) { t.longitudinal.value.B = 0.0; },
+      "the stiffness factor B of the longitudinal curve");
+  refused(
+      magic_tyre, [](MagicFormula& t) { t.lateral.value.C = -1.3; }, "the shape factor C of the lateral curve must be");
+  refused(
+      magic_tyre, [](MagicFormula& t) { t.lateral.value.D = -1.0; },
       "the peak factor D of the lateral curve must be positive");
   refused(
-      magic, [&](MagicFormula& t) { t.aligning.D = nan; }, "the peak factor D of the aligning curve must be finite");
+      magic_tyre, [&](MagicFormula& t) { t.aligning.D = nan; },
+      "the peak factor D of the aligning curve must be finite");
   refused(
-      magic, [](MagicFormula& t) { t.aligning.E = 1.5; },
+      magic_tyre, [](MagicFormula& t) { t.aligning.E = 1.5; },
       "the curvature factor E of the aligning curve must be at most 1, but is 1.5");
   refused(
-      magic, [](MagicFormula& t) { t.camber_factor = -0.1; }, "the camber factor of the tyre must be zero or positive");
+      magic_tyre, [](MagicFormula& t) { t.camber_factor = -0.1; },
+      "the camber factor of the tyre must be zero or positive");
 }
 
 }  // namespace polybody::tyre_test

@@ -7,6 +7,7 @@
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"
+#include "support/tyres.hpp"
 
 namespace polybody {
 using namespace laws;
@@ -16,16 +17,6 @@ double const nan = std::numeric_limits<double>::quiet_NaN();
 using Frames = std::array<Frame<double>, 2>;
 using States = std::array<double, 2>;
 
-LinearTyre const grip{.longitudinal_stiffness = 6e4,
-                      .cornering_stiffness = 4e4,
-                      .longitudinal_friction = 1.1,
-                      .lateral_friction = 0.9,
-                      .camber_stiffness = 2e3,
-                      .trail = 0.03};
-MagicFormula const magic{.longitudinal = MagicCurve{10.0, 1.9, 1.0, 0.97},
-                         .lateral = MagicCurve{12.3, 1.3, 0.92, -0.7},
-                         .aligning = {11.9, 2.4, -0.013, -2.6},
-                         .camber_factor = 0.05};
 BumpCourse const bumps({{.x = 0.3, .length = 6.0, .height = 0.2, .y = 0.1, .width = 5.0}});
 
 template <class G = FlatGround>
@@ -34,7 +25,7 @@ Wheel<LinearTyre, G> wheel(double crown = 0.0, G const& ground = {}) {
           .crown = crown,
           .axle = Vec3::UnitY(),
           .normal = {.stiffness = 2e5, .damping = 500.0, .onset = 1e-3},
-          .tyre = grip,
+          .tyre = linear_tyre,
           .relaxation = {.longitudinal = 0.2, .lateral = 0.4, .damping_time = 2e-3},
           .rolling = {.coefficient = 0.012, .speed = 0.05},
           .terrain = ground};
@@ -251,9 +242,9 @@ struct WheelCase {
                     .tyre =
                         [] {
                           if constexpr (std::is_same_v<L, LinearTyre>)
-                            return grip;
+                            return linear_tyre;
                           else
-                            return magic;
+                            return magic_tyre;
                         }(),
                     .relaxation = w.relaxation,
                     .rolling = w.rolling,
