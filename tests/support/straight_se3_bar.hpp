@@ -19,6 +19,8 @@ inline Placement helix(Vec6 const& strains, double s) {
   auto const h = exp_se3<double>({pull, turn});
   return {.origin = h.r, .axes = h.A};
 }
-inline Vec6 six(double a, double b, double c, double d, double e, double f) { return (Vec6() << a, b, c, d, e, f).finished(); }
+inline Vec6 six(double a, double b, double c, double d, double e, double f) {
+  return (Vec6() << a, b, c, d, e, f).finished();
+}
 
 }  // namespace polybody
