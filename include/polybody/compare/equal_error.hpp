@@ -2,6 +2,7 @@
 /// \file
 /// Comparison of formulations at equal error: mesh and step vary together, each formulation is compared with the
 /// converged result of its own physical model, and CPU times are compared at equal errors.
+/// Theory: Eqs. 11.29 to 11.34.
 
 #include <ctime>
 #include <functional>

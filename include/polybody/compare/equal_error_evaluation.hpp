@@ -9,6 +9,7 @@
 /// 1911; Roache 1998]:
 ///   Y = y(N, H) + (y(N, H) − y(N', H))/((N/N')^p − 1) + (y(N, H) − y(N, H'))/((H'/H)^q − 1),
 /// with the finest mesh N, the shortest step H, and their predecessors N' and H'.
+/// Theory: Eqs. 11.29 to 11.34.
 
 #include <polybody/compare/equal_error_report.hpp>
 

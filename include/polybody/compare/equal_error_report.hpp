@@ -2,6 +2,7 @@
 /// \file
 /// Results of a comparison at equal error: runs of each formulation over mesh and step, references of the physical
 /// models, and the cheapest setting for each wanted error.
+/// Theory: Eq. 11.33.
 
 #include <algorithm>
 #include <cmath>

@@ -7,6 +7,7 @@
 ///   r(s) = r₀ + ∫ t ds (Eq. 2.2),  κ = |t′| (Eq. 2.4),  τ = t·(t′ × t″)/κ²  (Frenet).
 /// With R′ = R K̃ the derivative of the tangent is t′ = R (0, K₃, −K₂), so that
 ///   κ² = K₂² + K₃²,  τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ².
+/// Theory: Eqs. 11.35, 11.36.
 
 #include <concepts>
 #include <span>

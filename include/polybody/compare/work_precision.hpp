@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Work-precision studies: error versus CPU time of one case at several steps or tolerances.
+/// Theory: Eq. 11.28.
 
 #include <span>
 

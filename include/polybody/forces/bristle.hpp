@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Elastic bristle in series with a Coulomb slider.
+/// Theory: Eq. 9.38.
 
 #include <polybody/forces/force_element.hpp>
 

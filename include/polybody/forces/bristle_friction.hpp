@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact friction with a bristle at each contact point, which sticks without creep.
+/// Theory: Eq. 9.47.
 
 #include <polybody/forces/bristle.hpp>
 #include <polybody/forces/contact.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Friction of contacts as a function of slip velocity and normal force.
+/// Theory: Eqs. 8.10, 8.11.
 
 #include <cmath>
 #include <concepts>

@@ -2,6 +2,7 @@
 /// \file
 /// Dry friction along one coordinate of a joint: regularised, by a bristle after LuGre, and by an elasto-plastic
 /// bristle. The laws are `ScalarLaw`s for `OnAngle`, `OnTurns` and `OnTranslation`; the force on b opposes the rate ẋ.
+/// Theory: Eqs. 9.28, 9.29, 9.32, 9.35, 9.36.
 
 #include <polybody/forces/scalar_force.hpp>
 

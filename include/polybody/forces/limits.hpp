@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Scalar laws of stops: limits on one or both sides, bump stops and backlash. A stop pushes and never pulls.
+/// Theory: Eqs. 9.18, 9.19.
 
 #include <polybody/forces/normal_force.hpp>
 #include <polybody/forces/scalar_force.hpp>

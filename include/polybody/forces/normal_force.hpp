@@ -2,7 +2,7 @@
 /// \file
 /// Normal force laws of contact, as functions of the penetration d > 0 and its rate ḋ. The force is never negative:
 /// bodies do not adhere.
-/// Theory: Eqs. 8.4 to 8.9.
+/// Theory: Eqs. 8.4 to 8.9, 9.19 to 9.23.
 
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>

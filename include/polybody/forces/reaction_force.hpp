@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Force elements that depend on the multipliers of a joint, such as friction that follows the load of a bearing.
+/// Theory: Eqs. 9.43, 9.44.
 
 #include <polybody/forces/force_states.hpp>
 

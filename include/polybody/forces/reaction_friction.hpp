@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Friction in a joint that is proportional to the joint's reaction force: bearings and guides.
+/// Theory: Eqs. 9.29, 9.38, 9.43.
 
 #include <memory>
 

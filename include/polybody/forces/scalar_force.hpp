@@ -2,6 +2,7 @@
 /// \file
 /// Forces along one relative coordinate of two markers: an angle, a translation or a distance. A scalar law computes
 /// the force from the coordinate x, its rate, first-order states and time.
+/// Theory: Eqs. 9.1 to 9.9.
 
 #include <algorithm>
 #include <limits>

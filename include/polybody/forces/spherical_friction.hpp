@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Dry friction in a spherical joint: a moment along the relative angular velocity of two markers.
+/// Theory: Eqs. 9.31, 9.40.
 
 #include <polybody/forces/bristle.hpp>
 #include <polybody/forces/friction_laws.hpp>

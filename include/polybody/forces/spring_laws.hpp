@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Scalar laws of springs, dampers, ropes and winches, for `OnAngle`, `OnTurns`, `OnTranslation` and `OnDistance`.
+/// Theory: Eqs. 9.10, 9.11, 9.13, 9.15, 9.16.
 
 #include <polybody/forces/scalar_force.hpp>
 #include <polybody/math/monotone_table.hpp>

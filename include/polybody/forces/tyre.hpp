@@ -2,6 +2,7 @@
 /// \file
 /// Tyre laws: steady forces of a tyre in the plane of the ground as functions of slip, camber and load. The axes are x
 /// forwards, z normal to the ground and y = z × x, to the left.
+/// Theory: Eqs. 9.56 to 9.60.
 
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>

@@ -2,7 +2,7 @@
 /// \file
 /// Accelerations and multipliers of a state, and projections onto the constraint equations. The matrix of all
 /// linear equations is [M, Gᵀ; G, 0] [thesis Eq. 3.2].
-/// Theory: Eqs. 5.2, 6.27.
+/// Theory: Eqs. 5.2, 6.27, 9.45.
 
 #include <algorithm>
 #include <memory>

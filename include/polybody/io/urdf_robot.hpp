@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Content of a URDF file: links with their inertia, and joints with their limits, damping, friction and mimicry.
+/// Theory: Eqs. 10.11, 10.12.
 
 #include <map>
 #include <optional>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Interpolation of given points with a continuous derivative and without overshoot.
+/// Theory: Eqs. 9.13, 9.14.
 
 #include <algorithm>
 #include <vector>

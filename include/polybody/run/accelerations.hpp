@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Accelerations of points, and computation of a state's accelerations by forward dynamics.
+/// Theory: Eq. 5.2.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/marker_frames.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Wrenches of force elements in a state, contact points of contact groups, and powers of force elements and drives.
+/// Theory: Eq. 3.1.
 
 #include <array>
 #include <functional>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Lengths, strains and tensions of a belt's spans in a state.
+/// Theory: Eqs. 3.16, 3.19.
 
 #include <algorithm>
 

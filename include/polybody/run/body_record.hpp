@@ -2,6 +2,7 @@
 /// \file
 /// Records of selected rigid bodies in a run: their motion, and each wrench on them with its point of action. The
 /// records are the input of a stress analysis after the run (decoupled_stress.hpp).
+/// Theory: Eqs. 11.18, 11.19.
 
 #include <algorithm>
 #include <optional>

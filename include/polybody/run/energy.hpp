@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Energies, momenta and centres of mass in an evaluated system.
+/// Theory: Eqs. 11.1, 11.2.
 
 #include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>

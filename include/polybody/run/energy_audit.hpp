@@ -3,6 +3,7 @@
 /// Energy audit of a run:
 ///   work of the drives + of the loads + of gravity = Δ kinetic + Δ stored + dissipated + unaccounted.
 /// The unaccounted energy of an exact motion is zero.
+/// Theory: Eqs. 11.5 to 11.7.
 
 #include <ostream>
 

@@ -2,6 +2,7 @@
 /// \file
 /// Impact at the limit of a joint as an event: the rate of the joint's angle or translation jumps by a coefficient of
 /// restitution.
+/// Theory: Eqs. 9.24 to 9.26.
 
 #include <memory>
 #include <numbers>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Consistent initial conditions: assembly of positions, projection of velocities, accelerations and multipliers.
+/// Theory: Eqs. 6.27, 11.3.
 
 #include <limits>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Position of a joint in a state: angle, translation and their rates. Full turns are counted over the states of a run.
+/// Theory: Eqs. 4.10, 4.14, 11.4.
 
 #include <cmath>
 #include <numbers>

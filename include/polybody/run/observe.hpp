@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Evaluation of joints in a single state: constraint violations and reactions.
+/// Theory: Eq. 4.5.
 
 #include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>

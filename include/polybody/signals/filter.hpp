@@ -2,6 +2,7 @@
 /// \file
 /// Low-pass filter (without phase shift) and amplitude spectrum of equally spaced samples, both by Fourier sums;
 /// resampling at equal steps.
+/// Theory: Eqs. 11.20 to 11.23.
 
 #include <algorithm>
 #include <complex>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Fatigue damage of a stress history: cycles by rainflow counting [ASTM E1049-85, §5.4.4] and their damage.
+/// Theory: Eqs. 11.25, 11.26.
 
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Samples of one quantity at increasing times, and the root mean square difference of two histories.
+/// Theory: Eq. 11.24.
 
 #include <algorithm>
 #include <cmath>

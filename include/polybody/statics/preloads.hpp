@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Wrenches of compliant joints in one state, such as the initial state.
+/// Theory: Eqs. 4.5, 5.3.
 
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>

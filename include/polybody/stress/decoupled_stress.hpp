@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// "Decoupled" stress: stress of a recorded rigid body, computed after the run [Wallin 2016, §4.3.5].
+/// Theory: Eqs. 11.14 to 11.16, 11.19.
 
 #include <polybody/bodies/ffr/attachment_modes.hpp>
 #include <polybody/bodies/shared/sections.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Stress at named nodes of a solid structure, from its nodal displacements.
+/// Theory: Eq. 11.17.
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Loads of a recorded rigid motion on a structure.
+/// Theory: Eqs. 11.18, 11.19.
 
 #include <algorithm>
 

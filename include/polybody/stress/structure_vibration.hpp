@@ -2,6 +2,7 @@
 /// \file
 /// Vibration of a structure under the loads of a recorded rigid motion, and linear vibration problems M q̈ + D(t) q̇ +
 /// K(t) q = f(t) as systems.
+/// Theory: Eq. 11.19.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 #include <polybody/integrators/integrator.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Work of forces, drives and compliant joints without a potential, step by step.
+/// Theory: Eq. 11.8.
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 /// \file
 /// Terrains under vehicles: heights z = h(x, y) in the axes of the ground, with z up, and their slopes. `HeightField`
 /// is ground given by heights on a grid, for example from a survey or a generated road.
+/// Theory: Eqs. 9.63, 9.64.
 
 #include <algorithm>
 #include <array>

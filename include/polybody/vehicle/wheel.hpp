@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Wheel with a tyre on a terrain: contact point of a disc or torus, normal force, and tyre forces with relaxation.
+/// Theory: Eqs. 9.61 to 9.63, 9.65 to 9.68.
 
 #include <polybody/forces/force_states.hpp>
 #include <polybody/forces/normal_force.hpp>

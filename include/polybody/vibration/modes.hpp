@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Small vibrations about an equilibrium.
-/// Theory: Eqs. 7.22 to 7.24.
+/// Theory: Eqs. 7.22 to 7.24, 11.12.
 
 #include <algorithm>
 #include <complex>

@@ -2,6 +2,7 @@
 /// \file
 /// Lowest modes of large structures by the Lanczos iteration of Spectra. Requires the headers of Spectra (Debian:
 /// libspectra-dev).
+/// Theory: Eq. 11.13.
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Small vibrations about a steady rotation.
-/// Theory: Eq. 7.25.
+/// Theory: Eqs. 7.25, 11.9, 11.10.
 
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/equilibrium_options.hpp>

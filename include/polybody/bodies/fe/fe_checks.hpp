@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Checks of the matrices of a finite element model, and the structure of a checked model.
+/// Theory: Eqs. 10.13 to 10.16.
 
 #include <array>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Units of finite element models: conversion to SI units, and guesses of the units of a file.
+/// Theory: Eq. 10.16.
 
 #include <polybody/bodies/fe/fe_matrix.hpp>
 

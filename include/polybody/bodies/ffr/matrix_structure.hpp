@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Structure from the matrices of a finite element program: solid elements with three displacements per node.
+/// Theory: Eqs. 10.13, 10.15 to 10.17.
 
 #include <limits>
 

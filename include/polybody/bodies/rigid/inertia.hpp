@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Mass, centre of mass and inertia tensor of rigid parts: simple solids, other axes, sums of parts.
+/// Theory: Eqs. 10.1 to 10.5, 10.10.
 
 #include <polybody/bodies/rigid/rigid.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Closed triangle meshes: volume, centre of mass and inertia tensor of the solid that a mesh encloses.
+/// Theory: Eqs. 10.6 to 10.9.
 
 #include <array>
 #include <map>

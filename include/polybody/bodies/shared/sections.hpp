@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Strains and forces of the sections of beams, with the same names for every formulation.
+/// Theory: Eq. 11.14.
 
 #include <span>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of a box with a sphere, a capsule and another box.
+/// Theory: Eqs. 9.49, 9.51, 9.54.
 
 #include <polybody/forces/shapes/box_core.hpp>
 

@@ -2,6 +2,7 @@
 /// \file
 /// Contact of a rounded segment with a rounded box: two contact points whose depths and positions are continuous
 /// functions of the poses.
+/// Theory: Eqs. 9.49 to 9.53.
 
 #include <polybody/forces/contact.hpp>
 

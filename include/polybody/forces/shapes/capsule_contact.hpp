@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of a capsule with a sphere and with another capsule.
+/// Theory: Eqs. 9.49, 9.51.
 
 #include <polybody/forces/shapes/box_core.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact geometry of a body that consists of several shapes.
+/// Theory: Eq. 9.55.
 
 #include <tuple>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of boxes, capsules and convex polyhedra with a plane.
+/// Theory: Eq. 9.48.
 
 #include <vector>
 
