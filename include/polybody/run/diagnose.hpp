@@ -2,6 +2,7 @@
 /// \file
 /// Diagnosis of a model at a state, before a run: constraint violations, redundant constraint equations, unconnected
 /// bodies, and stable steps of explicit integrators.
+/// Theory: Eqs. 7.11, 11.37.
 
 #include <ostream>
 

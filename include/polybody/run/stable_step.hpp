@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Warning of compliant joints that are too stiff for the step of an explicit integrator.
+/// Theory: Eqs. 6.37, 11.37.
 
 #include <polybody/integrators/integrator.hpp>
 
