@@ -125,6 +125,43 @@ def root(f, a, b):
     return 0.5 * (a + b)
 
 
+# --- chapters 6 and 7 --------------------------------------------------------------------------
+def grows(step, y):
+    """True if the state y grows in many linear steps."""
+    for _ in range(20000):
+        y = step(*y)
+        if sum(map(abs, y)) > 1e3:
+            return True
+    return False
+
+
+def eq_6_33_6_34_6_37():
+    for w2, d in (9.0, 0.8), (9.0, 20.0), (1.0, 0.1):
+
+        def euler(h, x, v):
+            v += h * (-w2 * x - d * v)
+            return x + h * v, v
+
+        def central(h, x, v, a):
+            v += 0.5 * h * a
+            x, a = x + h * v, -w2 * (x + h * v) - d * (v + 0.5 * h * a)
+            return x, v + 0.5 * h * a, a
+
+        for method, y, limit in (euler, (1.0, 0.5), 4 / (d + sqrt(d * d + 4 * w2))), (central, (1.0, 0.5, 0.2), 2 / (d + sqrt(d * d + w2))):
+            for part in 0.99, 1.01:
+                require(grows(lambda *y: method(part * limit, *y), y) == (part > 1), f"{method.__name__} at {part} of its limit")
+
+
+def eq_7_17():
+    u, v = vector(4), vector(4)
+    a = [[u[i] * u[j] + v[i] * v[j] for j in range(4)] for i in range(4)]  # rank 2
+    held = [[a[i][j] + (i == j and i in (0, 1)) for j in range(4)] for i in range(4)]
+    for k in 0, 1:
+        require(norm(apply(a, solve(held, [float(i == k) for i in range(4)]))) < 1e-9, "Z does not span the null space")
+    y = solve(held, apply(a, vector(4)))
+    same(abs(y[0]) + abs(y[1]), 0, 1e-9)  # no force in the springs for a load that can be balanced
+
+
 # --- chapter 9: coordinates, springs, stops ---------------------------------------------------
 def eq_9_2_9_3_9_4():
     a, b, wa, wb = rotation(vector()), rotation(vector()), vector(), vector()
