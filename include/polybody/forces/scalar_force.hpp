@@ -52,7 +52,8 @@ concept StatelessScalarLaw = states_of<L>() == 0 && requires(L const law, double
   { law.template force<double>(x, x, t) } -> std::convertible_to<double>;
 };
 /// Scalar law with first-order states z and their rates ż. Optional members are those of a law without states, with
-/// `potential(x, z, t)`, and `dissipation(x, rate, z, t)`, the power −∂V/∂z · ż, and `initial_states()`.
+/// `potential(x, z, t)`, and `dissipation(x, rate, z, t)`, the power −(Q₀ ẋ + V̇) with the force Q₀ at zero rate, and
+/// `initial_states()`.
 template <class L>
 concept ScalarLawWithStates =
     states_of<L>() > 0 && requires(L const law, double x, std::array<double, states_of<L>()> const z, double t) {
@@ -69,7 +70,7 @@ template <class L, class T>
 concept HasScalarPotential = StatelessScalarLaw<L> && requires(L const law, T const x, double t) {
   { law.potential(x, t) } -> std::convertible_to<T>;
 };
-/// Scalar law with states that has a potential V(x, z, t) and the power −∂V/∂z · ż.
+/// Scalar law with states that has a potential V(x, z, t) and the power −(Q₀ ẋ + V̇).
 template <class L>
 concept HasScalarStatePotential =
     ScalarLawWithStates<L> && requires(L const law, double x, std::array<double, states_of<L>()> const z, double t) {
