@@ -14,8 +14,8 @@
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
-#include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/rod_section.hpp>
 
 namespace polybody {
 
@@ -33,24 +33,10 @@ struct SectionStrains {
   Vec<T, 3> n, m;       ///< Γ and l K relative to the reference; after `stress` the section forces N, M
 };
 
-/// Stiffness and damping of a section: section forces and tangent from the strains of an element.
-class LrvfSection {
+/// Section of an element of `Lrvf`: section forces and tangent from the strains of an element.
+class LrvfSection : public RodSection {
  public:
-  /// Section for elements of arc length `l`.
-  /// \throws InvalidInput unless EA, GA, GA_z, GJ, EI_y and EI are positive.
-  template <class T = double>  // compiled only if used
-  LrvfSection(Bar const& bar, BarConstants const& c, double l) : l_(l), pretension_(bar.pretension) {
-    double const shear = bar.damping.shear, bending = bar.damping.bending;
-    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
-    double const time[] = {bar.damping.axial, shear, shear, shear, bending, bending};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i) {
-      require_positive(stiffness[i], std::string("Lrvf: the stiffness ") + names[i] + " of the bar");
-      stiffness_[i] = stiffness[i];
-      time_[i] = time[i];
-      damped_ = damped_ || time[i] != 0.0;
-    }
-  }
+  using RodSection::RodSection;
 
   /// Copy of the section for the quadrature point p. The weight of each strain multiplies its stiffness, and that of
   /// the axial strain also the pretension.
@@ -60,8 +46,6 @@ class LrvfSection {
     out.pretension_ *= p.axial;
     return out;
   }
-
-  bool damped() const { return damped_; }  ///< true if a damping time is not zero
 
   /// Stress C (strain + τ strain˙) plus the pretension. The stress replaces the strains in s.n and s.m.
   template <StateScalar T>
@@ -79,20 +63,6 @@ class LrvfSection {
       s.m[i] *= stiffness_[3 + i] / l_;
     }
     s.n[0] += pretension_;
-  }
-  /// Section forces (N, M) for the strains (Γ, K), without damping [N], [N m].
-  Vec6 forces(Vec6 const& strains) const {
-    Vec6 n = strains;
-    for (int i = 0; i < 6; ++i) n[i] *= stiffness_[i];
-    n[0] += pretension_;
-    return n;
-  }
-  /// Strain energy per length for the strains (Γ, K) [J/m].
-  template <class T = double>  // compiled only if used
-  double energy(Vec6 const& strains) const {
-    T sum = 0.0;
-    for (int i = 0; i < 6; ++i) sum += strains[i] * stiffness_[i] * strains[i];
-    return 0.5 * sum + pretension_ * strains[0];
   }
 
   /// Tangent of the elastic and damping force of an element. With x = Rᵀ (δr₂ − δr₁)/c₀ and θ = (δθ₁, δθ₂), in the axes
@@ -174,11 +144,6 @@ class LrvfSection {
     }
     return out;
   }
-
-  double l_, pretension_;
-  Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;       ///< damping times [s]
-  bool damped_ = false;
 };
 
 namespace detail {

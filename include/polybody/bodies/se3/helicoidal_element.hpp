@@ -8,57 +8,20 @@
 ///   δφ = X δθ₂ − Xᵀ δθ₁,  δp = Xᵀ R₁ᵀ (δr₂ − δr₁) + Y δθ₂ − Yᵀ δθ₁.
 /// Theory: Eqs. 2.107 to 2.113.
 
-#include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/rod_section.hpp>
 #include <polybody/math/se3.hpp>
 
 namespace polybody {
 
-/// Stiffness, damping and pretension of a section, for elements of one length.
-class HelicoidalSection {
+/// Section of the elements of `Se3Beam`, which have one length l.
+class HelicoidalSection : public RodSection {
  public:
-  /// Section for elements of arc length `l`.
-  /// \throws InvalidInput unless EA, GA, GA_z, GJ, EI_y and EI are positive.
-  template <class T = double>  // compiled only if used
-  HelicoidalSection(Bar const& bar, BarConstants const& c, T l) : l_(l), pretension_(bar.pretension) {
-    double const shear = bar.damping.shear, bending = bar.damping.bending;
-    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
-    double const time[] = {bar.damping.axial, shear, shear, shear, bending, bending};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i) {
-      require_positive(stiffness[i], std::string("Se3Beam: the stiffness ") + names[i] + " of the bar");
-      stiffness_[i] = stiffness[i];
-      time_[i] = time[i];
-      damped_ = damped_ || time[i] != 0.0;
-    }
-  }
+  using RodSection::RodSection;
 
-  double length() const { return l_; }                       ///< arc length of an element [m]
-  bool damped() const { return damped_; }                    ///< true if a damping time is not zero
   double time(int i) const { return time_[i]; }              ///< damping time of strain i [s]
   double spring(int i) const { return stiffness_[i] / l_; }  ///< stiffness of strain i divided by l
-  /// Section forces (N, M) for the strains ε (6), without damping [N], [N m].
-  template <class T = double>  // compiled only if used
-  Vec<T, 6> forces(Vec<T, 6> const& strains) const {
-    Vec<T, 6> n;
-    for (int i = 0; i < 6; ++i) n[i] = strains[i] * stiffness_[i];
-    n[0] += pretension_;
-    return n;
-  }
-  /// Strain energy per length for the strains ε (6) [J/m].
-  template <class T = double>  // compiled only if used
-  T energy(Vec<T, 6> const& strains) const {
-    T sum = 0.0;
-    for (int i = 0; i < 6; ++i) sum += strains[i] * stiffness_[i] * strains[i];
-    return 0.5 * sum + pretension_ * strains[0];
-  }
-  double pretension() const { return pretension_; }  ///< axial force in the reference configuration [N]
-
- private:
-  double l_, pretension_;
-  Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;       ///< damping times [s]
-  bool damped_ = false;
+  double pretension() const { return pretension_; }          ///< axial force in the reference configuration [N]
 };
 
 /// Velocities of the nodes of an element.

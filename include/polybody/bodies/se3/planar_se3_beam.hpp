@@ -38,28 +38,14 @@ struct CircularArc : SimoVuQuoc {
   };
 
   /// Strains ε, γ, κ, with p = (x′, y′, θ, θ′, φ) in the middle of the element.
-  struct Section {
-    static constexpr int points = 1;
-    static constexpr int components = 1;
+  struct Section : SimoVuQuoc::Section {
     static constexpr int parameters = 5;
-    static constexpr int strains = 3;
 
-    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.EI}; }
-    static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
-
-    static constexpr int reach = 2;
-    /// Index of the coordinate of node j that shape k reads.
-    static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
     /// Parameters in the middle of the element, because the strains are those of the whole element.
     template <class T = double>  // compiled only if used
     static Mat<T, 5, 2> map(double, double l) {
-      ShapeValues<2> const n = linear_shape(0.5, l);
       Mat<T, 5, 2> p;
-      for (int j = 0; j < 2; ++j) {
-        p(0, j) = p(1, j) = p(3, j) = n.ds[std::size_t(j)];
-        p(2, j) = n.s[std::size_t(j)];
-        p(4, j) = j == 0 ? -1.0 : 1.0;
-      }
+      p << SimoVuQuoc::Section::map<T>(0.5, l), T(-1), T(1);
       return p;
     }
     template <KernelScalar T>

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
-#include <polybody/bodies/se3/frame_chain.hpp>
 #include <polybody/bodies/se3/helicoidal_section.hpp>
+#include <polybody/bodies/shared/frame_chain.hpp>
 
 namespace polybody {
 
@@ -25,15 +25,8 @@ namespace polybody {
 /// element must be less than π.
 class Se3Beam : public FrameChain {
  public:
-  static constexpr Index default_elements = 32;             ///< number of elements of `from(bar)` (`BarMesh`)
+  static constexpr bool objective = true;
   static constexpr std::string_view family = "SE(3) beam";  ///< family in reports (`formulation_family`)
-
-  /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
-  struct Point {
-    Index element = 0;        ///< index of the element, counted from the first end of the bar
-    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
-    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the section [m]
-  };
 
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], and unless GA, GA_z, GJ and EI_y of the bar are positive.
@@ -54,10 +47,7 @@ class Se3Beam : public FrameChain {
   template <class T = double>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Se3Beam");
-    if (!curve)
-      throw InvalidInput("reference_curve.missing", {ErrorObject{"Se3Beam"},
-                                                     ": the reference curve is an empty function. Pass a function that "
-                                                     "returns a Placement for each arc length s."});
+    require_curve(curve, "Se3Beam");
     return Se3Beam(bar, polybody::constants(bar), n, curve);
   }
 
@@ -65,15 +55,8 @@ class Se3Beam : public FrameChain {
   /// \throws InvalidInput for s outside the bar.
   template <class T = double>  // compiled only if used
   Point at(T s, double y = 0.0, double z = 0.0) const {
-    double const x = require_inside(s, length(), "Se3Beam") / element_length();
-    require_finite(y, "Se3Beam: y of a point");
-    require_finite(z, "Se3Beam: z of a point");
-    Index const e = std::min(Index(x + 1e-12), elements() - 1);
-    double const xi = x - double(e);
-    return {e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
+    return point_at<T>(s, y, z, "Se3Beam");
   }
-  using FrameChain::first_column;
-  Index first_column(Point const& p) const { return first_column(p.element); }
 
   /// Elastic and damping force (helicoidal_element.hpp), and −Ω × J Ω at the nodes.
   template <StateScalar T>
@@ -193,13 +176,14 @@ class Se3Beam : public FrameChain {
  private:
   template <class Curve>  // compiled only if used
   Se3Beam(Bar const& bar, BarConstants const& c, Index n, Curve const& curve)
-      : FrameChain(bar, c, n, curve), section_(bar, c, element_length()), free_(std::size_t(n)) {
-    for (Index e = 0; e < n; ++e) set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length())).axes);
+      : FrameChain(bar, c, n, curve, "Se3Beam"), section_(bar, c, element_length(), "Se3Beam"), free_(std::size_t(n)) {
+    for (Index e = 0; e < n; ++e)
+      set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length()), "Se3Beam").axes);
   }
   /// Sets d₀ of element e; `middle` are the axes of the section of the curve in the middle of the element.
   template <class T>  // compiled only if used
   void set_free(Index e, Mat<T, 3, 3> const& middle) {
-    HelicoidalElement<T> const element(FrameChain::reference(), 7 * e);
+    HelicoidalElement<T> const element(reference_, 7 * e);
     ScrewVector<T> const& d = free_[std::size_t(e)] = element.d;
     double const l = element_length(), size = std::sqrt(squared_norm(d.translation));
     if (!(size > 1e-6 * l && size < (1.0 + 1e-6) * l))

@@ -257,6 +257,15 @@ inline void require_elements(Index n, std::string_view what) {
                                          " elements do not fit into the memory. Use at most 10000000."});
 }
 
+/// Checks the reference curve of a body.
+/// \throws InvalidInput naming `what` for an empty function.
+inline void require_curve(ReferenceCurve const& curve, std::string_view what) {
+  if (!curve)
+    throw InvalidInput("reference_curve.missing", {ErrorObject{what},
+                                                   ": the reference curve is an empty function. Pass a function that "
+                                                   "returns a Placement for each arc length s."});
+}
+
 /// Returns s limited to the bar, 0 ≤ s ≤ length.
 /// \throws InvalidInput naming `what` if s lies outside by more than 1e-12 of the length.
 inline double require_inside(double s, double length, std::string_view what) {

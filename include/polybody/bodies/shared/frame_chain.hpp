@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Chain of two-node elements whose nodes are frames, with its inertia: the parts of `Se3Beam` that do not depend on
-/// its strains.
-/// Theory: Eq. 2.114.
+/// Chain of two-node elements whose nodes are frames, with its inertia: the common part of `Lrvf` and `Se3Beam`, which
+/// does not depend on the strains.
+/// Theory: Eqs. 2.59, 2.114.
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include <polybody/bodies/shared/bar.hpp>
@@ -26,14 +27,21 @@ class FrameChain {
   static constexpr World world = World::space;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = true;
-  static constexpr bool objective = true;
   static constexpr int element_columns = 12;
   static constexpr int point_columns = 12;
   static constexpr int element_stride = 6;
   static constexpr bool vectorised_kernels = false;
+  static constexpr Index default_elements = 32;  ///< number of elements of `from(bar)` (`BarMesh`)
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
+
+  /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
+  struct Point {
+    Index element = 0;        ///< index of the element, counted from the first end of the bar
+    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
+    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the section [m]
+  };
 
   double length() const { return length_; }
   double element_length() const { return l_; }
@@ -43,6 +51,7 @@ class FrameChain {
   Index coordinates() const { return 7 * (n_ + 1); }
   Index velocities() const { return 6 * (n_ + 1); }
   Index first_column(Index e) const { return 6 * e; }
+  Index first_column(Point const& p) const { return first_column(p.element); }
   char const* coordinate_unit(Index i) const { return i % 7 < 3 ? "m" : "1"; }
   char const* velocity_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
 
@@ -112,9 +121,10 @@ class FrameChain {
   }
 
  protected:
-  /// Chain of n elements of the bar, with nodes on `curve` in the axes of the bar.
+  /// Chain of n elements of the bar, with nodes on `curve` in the axes of the bar. `body` is the name of the body type
+  /// in messages.
   template <class Curve>  // compiled only if used
-  FrameChain(Bar const& bar, BarConstants const& c, Index n, Curve const& curve)
+  FrameChain(Bar const& bar, BarConstants const& c, Index n, Curve const& curve, std::string const& body)
       : constants_(c),
         n_(n),
         length_(bar.length),
@@ -125,7 +135,7 @@ class FrameChain {
     for (int i = 0; i < 3; ++i) rotary_[i] *= 0.5 * l_;
     std::span<double> const q(reference_);
     for (Index i = 0; i <= n; ++i) {
-      Placement const at = placed(bar, curve(double(i) * l_));
+      Placement const at = placed(bar, curve(double(i) * l_), body);
       set_entries<3>(q, 7 * i, at.origin);
       set_entries<4>(q, 7 * i + 3, quaternion_of(at.axes));
     }
@@ -133,18 +143,28 @@ class FrameChain {
 
   /// Placement in the world of a section with the placement `section` in the axes of the bar.
   template <class T = double>  // compiled only if used
-  static Placement placed(Bar const& bar, Placement const& section) {
-    section.check("Se3Beam: the reference curve");
+  static Placement placed(Bar const& bar, Placement const& section, std::string const& body) {
+    section.check(body + ": the reference curve");
     Placement out{product<T>(bar.placement.axes, section.origin), product<T>(bar.placement.axes, section.axes)};
     for (int i = 0; i < 3; ++i) out.origin[i] += bar.placement.origin[i];
     return out;
+  }
+  /// Point at the arc length s of the reference, and (y, z) from the axis.
+  /// \throws InvalidInput naming `body` for s outside the bar.
+  template <class T = double>  // compiled only if used
+  Point point_at(T s, double y, double z, std::string const& body) const {
+    double const x = require_inside(s, length_, body) / l_;
+    require_finite(y, body, ": y of a point");
+    require_finite(z, body, ": z of a point");
+    Index const e = std::min(Index(x + 1e-12), n_ - 1);
+    double const xi = x - double(e);
+    return {e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
   }
   /// Unit quaternion of the section of node i.
   template <StateScalar T>
   static Quaternion<T> axes_of(std::span<T const> q, Index i) {
     return entries<4>(q, 7 * i + 3);
   }
-  std::span<double const> reference() const { return reference_; }  ///< coordinates of the undeformed beam
 
   /// Moment −Ω × J Ω of the inertia forces on node i.
   template <StateScalar T>
@@ -164,6 +184,8 @@ class FrameChain {
     }
   }
 
+  std::vector<double> reference_;  ///< coordinates of the undeformed beam
+
  private:
   /// Angular momentum J Ω.
   template <class T>
@@ -176,7 +198,6 @@ class FrameChain {
   double length_, l_;
   double sixth_;  ///< Aρ l/6 [kg]
   Vec3 rotary_;   ///< J of half an element at a node [kg m²]
-  std::vector<double> reference_;
 };
 
 }  // namespace polybody
