@@ -56,7 +56,7 @@ class Lrvf : public FrameChain {
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     require_curve(curve, "Lrvf");
-    return Lrvf(bar, polybody::constants(bar), n, curve);
+    return Lrvf(bar, detail::chain_sections(bar, n, false, "Lrvf"), n, curve);
   }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
@@ -185,7 +185,7 @@ class Lrvf : public FrameChain {
  private:
   template <class T>
   using Section = typename Interpolation::template Section<T>;
-  Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
+  Lrvf(Bar const& bar, detail::ChainSections const& sections, Index n, ReferenceCurve const& curve);
 
   static bool inside(Point const& p) { return p.xi != 0.0 && p.xi != 1.0; }
   /// Section at p: at a node exactly the section of the node, elsewhere the section of the interpolation.
@@ -209,10 +209,11 @@ class Lrvf : public FrameChain {
 };
 
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
-Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-    : FrameChain(bar, c, n, curve, "Lrvf"),
+Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, detail::ChainSections const& sections, Index n,
+                                      ReferenceCurve const& curve)
+    : FrameChain(bar, sections, n, curve, "Lrvf"),
       interpolation_(bar.placement),
-      section_(bar, c, element_length(), "Lrvf"),
+      section_(sections.elements[0], element_length(), bar.pretension),
       elastic_(section_, bar.placement, element_length(), n) {
   if constexpr (PathDependentInterpolation<Interpolation>) {
     reference_.resize(std::size_t(detail::carried_at(n, n)));

@@ -14,14 +14,76 @@
 
 namespace polybody {
 
-/// Section of the elements of `Se3Beam`, which have one length l.
+/// Section of an element of `Se3Beam` of length l. The strains are those of the line of the centres of mass.
 class HelicoidalSection : public RodSection {
  public:
-  using RodSection::RodSection;
+  template <class T = double>  // compiled only if used
+  HelicoidalSection(detail::CentredSection const& section, T l, double pretension)
+      : RodSection(section, l, pretension), centre_(section.centre) {
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        springs_(i, j) = section.stiffness(i, j) / l;
+        dampers_(i, j) = section.damping(i, j) / l;
+        coupled_ = coupled_ || (i != j && (springs_(i, j) != 0.0 || dampers_(i, j) != 0.0));
+      }
+    preload_ = Vec6(Vec6::Zero());
+    preload_[0] = pretension;
+    preload_[4] = -centre_[2] * pretension;  // −c × N
+    preload_[5] = centre_[1] * pretension;
+    coupled_ = coupled_ || centre_[1] != 0.0 || centre_[2] != 0.0;
+  }
 
-  double time(int i) const { return time_[i]; }              ///< damping time of strain i [s]
-  double spring(int i) const { return stiffness_[i] / l_; }  ///< stiffness of strain i divided by l
-  double pretension() const { return pretension_; }          ///< axial force in the reference configuration [N]
+  double time(int i) const { return time_[i]; }                  ///< damping time of strain i [s]
+  double spring(int i) const { return stiffness_[i] / l_; }      ///< stiffness of strain i divided by l
+  double pretension() const { return pretension_; }              ///< axial force in the reference configuration [N]
+  bool coupled() const { return coupled_; }                      ///< true if matrices couple the strains
+  Mat<double, 6, 6> const& springs() const { return springs_; }  ///< stiffness divided by l
+  Mat<double, 6, 6> const& dampers() const { return dampers_; }  ///< damping divided by l
+  Vec6 const& preload() const { return preload_; }               ///< section forces in the reference configuration
+
+  /// Strain energy per length [J/m].
+  template <class T = double>  // compiled only if used
+  T energy(Vec<T, 6> const& strains) const {
+    if (!coupled_) return RodSection::energy<T>(strains);
+    T sum = T(0.0);
+    for (int i = 0; i < 6; ++i) {
+      sum += preload_[i] * strains[i];
+      for (int j = 0; j < 6; ++j) sum += 0.5 * l_ * strains[i] * springs_(i, j) * strains[j];
+    }
+    return sum;
+  }
+  /// Strains of the axis of the bar: Γ + c × K, K.
+  template <class T = double>  // compiled only if used
+  Vec<T, 6> axis_strains(Vec<T, 6> const& strains) const {
+    return moved<T>(strains, 0, 3);
+  }
+  /// Section forces about the axis of the bar: N, M + c × N, without damping [N], [N m].
+  template <class T = double>  // compiled only if used
+  Vec<T, 6> axis_forces(Vec<T, 6> const& strains) const {
+    if (!coupled_) return forces<T>(strains);
+    Vec<T, 6> n;
+    for (int i = 0; i < 6; ++i) {
+      n[i] = preload_[i];
+      for (int j = 0; j < 6; ++j) n[i] += l_ * springs_(i, j) * strains[j];
+    }
+    return moved<T>(n, 3, 0);
+  }
+
+ private:
+  /// x with c × (part of x from entry `of`) added to the part from entry `to`.
+  template <class T>
+  Vec<T, 6> moved(Vec<T, 6> x, int to, int of) const {
+    T const a = x[of], b = x[of + 1], c = x[of + 2];
+    x[to] += centre_[1] * c - centre_[2] * b;
+    x[to + 1] += centre_[2] * a;
+    x[to + 2] -= centre_[1] * a;
+    return x;
+  }
+
+  Vec3 centre_;                          ///< centre of mass in the section [m]
+  Mat<double, 6, 6> springs_, dampers_;  ///< stiffness and damping divided by l
+  Vec6 preload_;
+  bool coupled_ = false;
 };
 
 /// Velocities of the nodes of an element.
@@ -70,6 +132,17 @@ struct HelicoidalElement {
   void set_forces(HelicoidalSection const& section, ScrewVector<double> const& free, NodeVelocities<T> const& v) {
     ScrewVector<T> const rates =
         section.damped() ? rate(v) : ScrewVector<T>{detail::zeros<Vec<T, 3>>(), detail::zeros<Vec<T, 3>>()};
+    if (section.coupled()) {
+      for (int r = 0; r < 6; ++r) {
+        T sum = T(section.preload()[r]);
+        for (int i = 0; i < 3; ++i)
+          sum += section.springs()(r, i) * (d.translation[i] - free.translation[i]) +
+                 section.springs()(r, 3 + i) * (d.rotation[i] - free.rotation[i]) +
+                 section.dampers()(r, i) * rates.translation[i] + section.dampers()(r, 3 + i) * rates.rotation[i];
+        (r < 3 ? n[r] : m[r - 3]) = sum;
+      }
+      return;
+    }
     for (int i = 0; i < 3; ++i) {
       n[i] = d.translation[i] - free.translation[i];
       m[i] = d.rotation[i] - free.rotation[i];
@@ -154,8 +227,17 @@ struct HelicoidalElement {
   Mat<T, 6, 9> stress_slope(HelicoidalSection const& section, Mat<T, 6, 9> const& b, NodeVelocities<T> const& v,
                             double ck, double cd) const {
     Mat<T, 6, 9> out;
-    for (int c = 0; c < 9; ++c)
-      for (int i = 0; i < 6; ++i) out(i, c) = b(i, c) * (section.spring(i) * (ck + cd * section.time(i)));
+    if (section.coupled()) {
+      for (int c = 0; c < 9; ++c)
+        for (int i = 0; i < 6; ++i) {
+          out(i, c) = T(0.0);
+          for (int j = 0; j < 6; ++j)
+            out(i, c) += (ck * section.springs()(i, j) + cd * section.dampers()(i, j)) * b(j, c);
+        }
+    } else {
+      for (int c = 0; c < 9; ++c)
+        for (int i = 0; i < 6; ++i) out(i, c) = b(i, c) * (section.spring(i) * (ck + cd * section.time(i)));
+    }
     if (!section.damped() || ck == 0.0) return out;
     Vec<T, 3> const none = detail::zeros<Vec<T, 3>>();
     ScrewMap<T> of_d = sum<T>(screw_map_derivative<T>(series, d, {none, v.w2}),
@@ -164,6 +246,7 @@ struct HelicoidalElement {
                        swept = transposed_product<T>(inverse.diagonal, skew<T>(v.apart));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) of_d.coupling(i, j) -= by_apart(i, j);
+    Mat<T, 6, 9> rates;
     for (int c = 0; c < 9; ++c)
       for (int r = 0; r < 3; ++r) {
         T p = T(0.0), phi = T(0.0);
@@ -172,8 +255,16 @@ struct HelicoidalElement {
           phi += of_d.diagonal(r, i) * b(3 + i, c);
         }
         if (c >= 3 && c < 6) p += swept(r, c - 3);
-        out(r, c) += p * (ck * section.spring(r) * section.time(r));
-        out(3 + r, c) += phi * (ck * section.spring(3 + r) * section.time(3 + r));
+        rates(r, c) = p;
+        rates(3 + r, c) = phi;
+      }
+    for (int c = 0; c < 9; ++c)
+      for (int i = 0; i < 6; ++i) {
+        if (!section.coupled()) {
+          out(i, c) += rates(i, c) * (ck * section.spring(i) * section.time(i));
+          continue;
+        }
+        for (int j = 0; j < 6; ++j) out(i, c) += ck * section.dampers()(i, j) * rates(j, c);
       }
     return out;
   }

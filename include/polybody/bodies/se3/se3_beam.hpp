@@ -33,7 +33,8 @@ class Se3Beam : public FrameChain {
   template <class T = double>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n) {
     require_elements(n, "Se3Beam");
-    return Se3Beam(bar, polybody::constants(bar), n, [](T s) { return Placement{.origin = Vec<T, 3>(s, 0, 0)}; });
+    return Se3Beam(bar, detail::chain_sections(bar, n, true, "Se3Beam"), n,
+                   [](T s) { return Placement{.origin = Vec<T, 3>(s, 0, 0)}; });
   }
   /// Beam from the straight bar, with the number of elements of `mesh`.
   template <class T = double>  // compiled only if used
@@ -48,7 +49,7 @@ class Se3Beam : public FrameChain {
   static Se3Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Se3Beam");
     require_curve(curve, "Se3Beam");
-    return Se3Beam(bar, polybody::constants(bar), n, curve);
+    return Se3Beam(bar, detail::chain_sections(bar, n, true, "Se3Beam"), n, curve);
   }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
@@ -73,23 +74,23 @@ class Se3Beam : public FrameChain {
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     HelicoidalElement<T> const element = stressed<T>(e, q, v);
-    element.tangent(section_, element.velocities(v, 6 * e), ck, cd, k);
+    element.tangent(section_of(e), element.velocities(v, 6 * e), ck, cd, k);
     add_gyroscopic_tangent<T>(e, v, cd, k);
   }
   template <class T = double>  // compiled only if used
   T strain_energy(Index e, std::span<T const> q) const {
-    return element_length() * section_.energy<T>(strains<T>(e, q));
+    return element_length() * section_of(e).energy<T>(strains<T>(e, q));
   }
 
   /// Strains (Γ, K) of the element of `p`, in the axes of its sections [1], [1/m] (`HasSections`).
   template <class T = double>  // compiled only if used
   Vec6 section_strains(Point const& p, std::span<T const> q) const {
-    return strains<T>(p.element, q);
+    return section_of(p.element).template axis_strains<T>(strains<T>(p.element, q));
   }
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   template <class T = double>  // compiled only if used
   Vec6 section_forces(Point const& p, std::span<T const> q) const {
-    return section_.forces<T>(strains<T>(p.element, q));
+    return section_of(p.element).template axis_forces<T>(strains<T>(p.element, q));
   }
   /// Rotation field at `p`, of constant curvature in an element. Its curvature includes that of the reference.
   template <class T = double>  // compiled only if used
@@ -110,10 +111,11 @@ class Se3Beam : public FrameChain {
     auto const nodes = s.twists(v, 6 * p.element);
     ScrewVector<T> const twist = s.twist(nodes), rate = s.twist_rate(nodes);
     Vec<T, 3> const w = product(s.R, twist.rotation), carried = cross(twist.rotation, twist.translation);
+    Vec3 const off = from_centre(p);
     Vec<T, 3> slide, arm;
     for (int i = 0; i < 3; ++i) {
       slide[i] = rate.translation[i] + carried[i];
-      arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
+      arm[i] = s.R(i, 1) * off[1] + s.R(i, 2) * off[2];
     }
     Vec<T, 3> const v_axis = product(s.R, twist.translation), swept = cross(w, arm), a_axis = product(s.R, slide),
                     turning = product(s.R, rate.rotation), tangential = cross(turning, arm),
@@ -140,7 +142,7 @@ class Se3Beam : public FrameChain {
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
     HelicoidalPoint<T> const s(p.xi, q, 7 * p.element);
-    Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
+    Vec<T, 3> const off = from_centre(p), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
     Vec<T, 3> moment = cross(off, f);
     Mat<T, 3, 3> of_moment = skew_of_skew(off, f);
     Mat<T, 3, 3> const of_f = skew(f), of_m = skew(m);
@@ -175,10 +177,28 @@ class Se3Beam : public FrameChain {
 
  private:
   template <class Curve>  // compiled only if used
-  Se3Beam(Bar const& bar, BarConstants const& c, Index n, Curve const& curve)
-      : FrameChain(bar, c, n, curve, "Se3Beam"), section_(bar, c, element_length(), "Se3Beam"), free_(std::size_t(n)) {
+  Se3Beam(Bar const& bar, detail::ChainSections const& sections, Index n, Curve const& curve)
+      : FrameChain(bar, sections, n, curve, "Se3Beam"), free_(std::size_t(n)) {
+    for (auto const& section : sections.elements) sections_.emplace_back(section, element_length(), bar.pretension);
     for (Index e = 0; e < n; ++e)
       set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length()), "Se3Beam").axes);
+    bool offset = false;
+    for (auto const& section : sections.nodes) offset = offset || !section.centre.isZero(0.0);
+    if (!offset) return;
+    for (Index i = 0; i <= n; ++i) {  // from the axis to the centres of mass
+      centres_.push_back(sections.nodes[sections.nodes.size() == 1 ? 0 : std::size_t(i)].centre);
+      Mat3 const axes = rotation_matrix<double>(axes_of<double>(reference_, i));
+      for (int k = 0; k < 3; ++k)
+        reference_[std::size_t(7 * i + k)] += axes(k, 1) * centres_.back()[1] + axes(k, 2) * centres_.back()[2];
+    }
+    for (Index e = 0; e < n; ++e) free_[std::size_t(e)] = HelicoidalElement<double>(reference_, 7 * e).d;
+  }
+  HelicoidalSection const& section_of(Index e) const { return sections_[sections_.size() == 1 ? 0 : std::size_t(e)]; }
+  /// Vector from the line of the centres of mass to the point p, in section axes [m].
+  Vec3 from_centre(Point const& p) const {
+    if (centres_.empty()) return {0.0, p.y, p.z};
+    Vec3 const &a = centres_[std::size_t(p.element)], &b = centres_[std::size_t(p.element) + 1];
+    return {0.0, p.y - (1.0 - p.xi) * a[1] - p.xi * b[1], p.z - (1.0 - p.xi) * a[2] - p.xi * b[2]};
   }
   /// Sets d₀ of element e; `middle` are the axes of the section of the curve in the middle of the element.
   template <class T>  // compiled only if used
@@ -208,7 +228,7 @@ class Se3Beam : public FrameChain {
   template <StateScalar T>
   HelicoidalElement<T> stressed(Index e, std::span<T const> q, std::span<T const> v) const {
     HelicoidalElement<T> element(q, 7 * e);
-    element.set_forces(section_, free_[std::size_t(e)], element.velocities(v, 6 * e));
+    element.set_forces(section_of(e), free_[std::size_t(e)], element.velocities(v, 6 * e));
     return element;
   }
   template <class T>
@@ -241,8 +261,9 @@ class Se3Beam : public FrameChain {
     }
   }
 
-  HelicoidalSection section_;
-  std::vector<ScrewVector<double>> free_;  ///< d₀ of each element
+  std::vector<HelicoidalSection> sections_;  ///< of all elements, or of each
+  std::vector<Vec3> centres_;                ///< centres of mass at the nodes; empty if all are on the axis
+  std::vector<ScrewVector<double>> free_;    ///< d₀ of each element
 };
 
 }  // namespace polybody

@@ -10,19 +10,13 @@ namespace polybody {
 /// Stiffness, damping and pretension of a section with the strains (Γ, K).
 class RodSection {
  public:
-  /// Section for elements of arc length `l`. `body` is the name of the body type in messages.
-  /// \throws InvalidInput unless EA, GA, GA_z, GJ, EI_y and EI are positive.
+  /// Section for elements of arc length `l`, with the diagonals of the stiffness and of the damping of `section`.
   template <class T = double>  // compiled only if used
-  RodSection(Bar const& bar, BarConstants const& c, T l, std::string const& body) : l_(l), pretension_(bar.pretension) {
-    double const shear = bar.damping.shear, bending = bar.damping.bending;
-    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
-    double const time[] = {bar.damping.axial, shear, shear, shear, bending, bending};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
+  RodSection(detail::CentredSection const& section, T l, double pretension) : l_(l), pretension_(pretension) {
     for (int i = 0; i < 6; ++i) {
-      require_positive(stiffness[i], body + ": the stiffness " + names[i] + " of the bar");
-      stiffness_[i] = stiffness[i];
-      time_[i] = time[i];
-      damped_ = damped_ || time[i] != 0.0;
+      stiffness_[i] = section.stiffness(i, i);
+      time_[i] = section.damping(i, i) / stiffness_[i];
+      damped_ = damped_ || time_[i] != 0.0;
     }
   }
 
