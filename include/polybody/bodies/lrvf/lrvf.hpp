@@ -56,7 +56,7 @@ class Lrvf : public FrameChain {
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     require_curve(curve, "Lrvf");
-    return Lrvf(bar, detail::chain_sections(bar, n, false, "Lrvf"), n, curve);
+    return Lrvf(bar, detail::chain_sections(bar, n, "Lrvf"), n, curve);
   }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
@@ -103,10 +103,12 @@ class Lrvf : public FrameChain {
   double strain_energy(Index e, std::span<double const> q) const { return elastic_.energy(e, q); }
 
   /// Strains (Γ, K) in the middle of the element of `p`, in the axes of the middle section [1], [1/m] (`HasSections`).
-  Vec6 section_strains(Point const& p, std::span<double const> q) const { return elastic_.strains(p.element, q); }
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return section_of(p.element).axis_strains(elastic_.strains(p.element, q));
+  }
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    return section_.forces(section_strains(p, q));
+    return section_of(p.element).forces(elastic_.strains(p.element, q));
   }
   /// Rotation field at `p`. Its curvature includes the curvature of the reference.
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const
@@ -130,7 +132,8 @@ class Lrvf : public FrameChain {
     Vec<T, 3> const w = detail::of_nodes(spin, turning);
     Vec<T, 3> arm, bias = detail::zeros<Vec<T, 3>>();
     if (inside(p)) bias = product(s.R, interpolation_.template bias<T>(s, turning));
-    for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
+    Vec3 const off = from_centre(p);
+    for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * off[1] + s.R(i, 2) * off[2];
     Vec<T, 3> const rate = cross(w, arm), tangential = cross(bias, arm), centripetal = cross(w, rate);
     for (int i = 0; i < 3; ++i) {
       out.frame.r[i] = q[7 * e + i] * (1.0 - p.xi) + q[7 * e + 7 + i] * p.xi + arm[i];
@@ -166,7 +169,7 @@ class Lrvf : public FrameChain {
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Section<T> s;
     section<T>(p, q, s);
-    Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
+    Vec<T, 3> const off = from_centre(p), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
     Vec<T, 3> c = cross(off, f);
     Mat<T, 3, 3> by_turn = skew_of_skew(off, f);
     Mat<T, 3, 3> const of_m = skew(m);
@@ -203,8 +206,10 @@ class Lrvf : public FrameChain {
     for (int i = 0; i < 3; ++i) out.spin(i, p.xi == 0.0 ? i : 3 + i) = T(1.0);
   }
 
+  LrvfSection const& section_of(Index e) const { return sections_[sections_.size() == 1 ? 0 : std::size_t(e)]; }
+
   Interpolation interpolation_;
-  LrvfSection section_;
+  std::vector<LrvfSection> sections_;  ///< of all elements, or of each
   ElasticElements<Interpolation, Quadrature> elastic_;
 };
 
@@ -213,8 +218,12 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, detail::ChainSections cons
                                       ReferenceCurve const& curve)
     : FrameChain(bar, sections, n, curve, "Lrvf"),
       interpolation_(bar.placement),
-      section_(sections.elements[0], element_length(), bar.pretension),
-      elastic_(section_, bar.placement, element_length(), n) {
+      sections_([&] {
+        std::vector<LrvfSection> all;
+        for (auto const& section : sections.elements) all.emplace_back(section, element_length(), bar.pretension);
+        return all;
+      }()),
+      elastic_(sections_, bar.placement, element_length(), n) {
   if constexpr (PathDependentInterpolation<Interpolation>) {
     reference_.resize(std::size_t(detail::carried_at(n, n)));
     std::span<double> const nodes(reference_);
@@ -235,6 +244,9 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, detail::ChainSections cons
                           " m has a chord of ", ErrorValue{chord}, " m", advice});
     elastic_.set_free(e, q, chord);
   }
+  if (move_to_centres(sections.nodes))
+    for (Index e = 0; e < n; ++e)
+      elastic_.set_free(e, q, std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e)))));
 }
 
 }  // namespace polybody

@@ -14,76 +14,16 @@
 
 namespace polybody {
 
-/// Section of an element of `Se3Beam` of length l. The strains are those of the line of the centres of mass.
+/// Section of an element of `Se3Beam`.
 class HelicoidalSection : public RodSection {
  public:
-  template <class T = double>  // compiled only if used
-  HelicoidalSection(detail::CentredSection const& section, T l, double pretension)
-      : RodSection(section, l, pretension), centre_(section.centre) {
-    for (int j = 0; j < 6; ++j)
-      for (int i = 0; i < 6; ++i) {
-        springs_(i, j) = section.stiffness(i, j) / l;
-        dampers_(i, j) = section.damping(i, j) / l;
-        coupled_ = coupled_ || (i != j && (springs_(i, j) != 0.0 || dampers_(i, j) != 0.0));
-      }
-    preload_ = Vec6(Vec6::Zero());
-    preload_[0] = pretension;
-    preload_[4] = -centre_[2] * pretension;  // −c × N
-    preload_[5] = centre_[1] * pretension;
-    coupled_ = coupled_ || centre_[1] != 0.0 || centre_[2] != 0.0;
-  }
+  using RodSection::RodSection;
 
-  double time(int i) const { return time_[i]; }                  ///< damping time of strain i [s]
-  double spring(int i) const { return stiffness_[i] / l_; }      ///< stiffness of strain i divided by l
-  double pretension() const { return pretension_; }              ///< axial force in the reference configuration [N]
-  bool coupled() const { return coupled_; }                      ///< true if matrices couple the strains
-  Mat<double, 6, 6> const& springs() const { return springs_; }  ///< stiffness divided by l
-  Mat<double, 6, 6> const& dampers() const { return dampers_; }  ///< damping divided by l
-  Vec6 const& preload() const { return preload_; }               ///< section forces in the reference configuration
-
-  /// Strain energy per length [J/m].
-  template <class T = double>  // compiled only if used
-  T energy(Vec<T, 6> const& strains) const {
-    if (!coupled_) return RodSection::energy<T>(strains);
-    T sum = T(0.0);
-    for (int i = 0; i < 6; ++i) {
-      sum += preload_[i] * strains[i];
-      for (int j = 0; j < 6; ++j) sum += 0.5 * l_ * strains[i] * springs_(i, j) * strains[j];
-    }
-    return sum;
-  }
-  /// Strains of the axis of the bar: Γ + c × K, K.
-  template <class T = double>  // compiled only if used
-  Vec<T, 6> axis_strains(Vec<T, 6> const& strains) const {
-    return moved<T>(strains, 0, 3);
-  }
-  /// Section forces about the axis of the bar: N, M + c × N, without damping [N], [N m].
-  template <class T = double>  // compiled only if used
-  Vec<T, 6> axis_forces(Vec<T, 6> const& strains) const {
-    if (!coupled_) return forces<T>(strains);
-    Vec<T, 6> n;
-    for (int i = 0; i < 6; ++i) {
-      n[i] = preload_[i];
-      for (int j = 0; j < 6; ++j) n[i] += l_ * springs_(i, j) * strains[j];
-    }
-    return moved<T>(n, 3, 0);
-  }
-
- private:
-  /// x with c × (part of x from entry `of`) added to the part from entry `to`.
-  template <class T>
-  Vec<T, 6> moved(Vec<T, 6> x, int to, int of) const {
-    T const a = x[of], b = x[of + 1], c = x[of + 2];
-    x[to] += centre_[1] * c - centre_[2] * b;
-    x[to + 1] += centre_[2] * a;
-    x[to + 2] -= centre_[1] * a;
-    return x;
-  }
-
-  Vec3 centre_;                          ///< centre of mass in the section [m]
-  Mat<double, 6, 6> springs_, dampers_;  ///< stiffness and damping divided by l
-  Vec6 preload_;
-  bool coupled_ = false;
+  double time(int i) const { return time_[i]; }              ///< damping time of strain i [s]
+  double spring(int i) const { return stiffness_[i] / l_; }  ///< stiffness of strain i divided by l
+  double pretension() const { return pretension_; }          ///< axial force in the reference configuration [N]
+  /// Sum of the stiffness with the factor `ck` and of the damping with the factor `cd`, divided by l.
+  Mat<double, 6, 6> slope(double ck, double cd) const { return matrix_sum(ck / l_, cd / l_); }
 };
 
 /// Velocities of the nodes of an element.
@@ -133,14 +73,12 @@ struct HelicoidalElement {
     ScrewVector<T> const rates =
         section.damped() ? rate(v) : ScrewVector<T>{detail::zeros<Vec<T, 3>>(), detail::zeros<Vec<T, 3>>()};
     if (section.coupled()) {
-      for (int r = 0; r < 6; ++r) {
-        T sum = T(section.preload()[r]);
-        for (int i = 0; i < 3; ++i)
-          sum += section.springs()(r, i) * (d.translation[i] - free.translation[i]) +
-                 section.springs()(r, 3 + i) * (d.rotation[i] - free.rotation[i]) +
-                 section.dampers()(r, i) * rates.translation[i] + section.dampers()(r, 3 + i) * rates.rotation[i];
-        (r < 3 ? n[r] : m[r - 3]) = sum;
+      ScrewVector<T> strains = scaled(d, 1.0 / section.length());
+      for (int i = 0; i < 3; ++i) {
+        strains.translation[i] -= free.translation[i] / section.length();
+        strains.rotation[i] -= free.rotation[i] / section.length();
       }
+      section.stress(strains, scaled(rates, 1.0 / section.length()), n, m);
       return;
     }
     for (int i = 0; i < 3; ++i) {
@@ -228,12 +166,7 @@ struct HelicoidalElement {
                             double ck, double cd) const {
     Mat<T, 6, 9> out;
     if (section.coupled()) {
-      for (int c = 0; c < 9; ++c)
-        for (int i = 0; i < 6; ++i) {
-          out(i, c) = T(0.0);
-          for (int j = 0; j < 6; ++j)
-            out(i, c) += (ck * section.springs()(i, j) + cd * section.dampers()(i, j)) * b(j, c);
-        }
+      out = detail::small_product(section.slope(ck, cd), b);
     } else {
       for (int c = 0; c < 9; ++c)
         for (int i = 0; i < 6; ++i) out(i, c) = b(i, c) * (section.spring(i) * (ck + cd * section.time(i)));
@@ -258,14 +191,13 @@ struct HelicoidalElement {
         rates(r, c) = p;
         rates(3 + r, c) = phi;
       }
+    if (section.coupled()) {
+      Mat<T, 6, 9> const more = detail::small_product(section.slope(0.0, ck), rates);
+      for (int i = 0; i < 54; ++i) out.data()[i] += more.data()[i];
+      return out;
+    }
     for (int c = 0; c < 9; ++c)
-      for (int i = 0; i < 6; ++i) {
-        if (!section.coupled()) {
-          out(i, c) += rates(i, c) * (ck * section.spring(i) * section.time(i));
-          continue;
-        }
-        for (int j = 0; j < 6; ++j) out(i, c) += ck * section.dampers()(i, j) * rates(j, c);
-      }
+      for (int i = 0; i < 6; ++i) out(i, c) += rates(i, c) * (ck * section.spring(i) * section.time(i));
     return out;
   }
   /// Writes the tangent in the columns (δr₁, δθ₁, δr₂, δθ₂) to k, from that in the columns of B.

@@ -33,7 +33,7 @@ class Se3Beam : public FrameChain {
   template <class T = double>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n) {
     require_elements(n, "Se3Beam");
-    return Se3Beam(bar, detail::chain_sections(bar, n, true, "Se3Beam"), n,
+    return Se3Beam(bar, detail::chain_sections(bar, n, "Se3Beam"), n,
                    [](T s) { return Placement{.origin = Vec<T, 3>(s, 0, 0)}; });
   }
   /// Beam from the straight bar, with the number of elements of `mesh`.
@@ -49,7 +49,7 @@ class Se3Beam : public FrameChain {
   static Se3Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Se3Beam");
     require_curve(curve, "Se3Beam");
-    return Se3Beam(bar, detail::chain_sections(bar, n, true, "Se3Beam"), n, curve);
+    return Se3Beam(bar, detail::chain_sections(bar, n, "Se3Beam"), n, curve);
   }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
@@ -90,7 +90,7 @@ class Se3Beam : public FrameChain {
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   template <class T = double>  // compiled only if used
   Vec6 section_forces(Point const& p, std::span<T const> q) const {
-    return section_of(p.element).template axis_forces<T>(strains<T>(p.element, q));
+    return section_of(p.element).template forces<T>(strains<T>(p.element, q));
   }
   /// Rotation field at `p`, of constant curvature in an element. Its curvature includes that of the reference.
   template <class T = double>  // compiled only if used
@@ -182,24 +182,10 @@ class Se3Beam : public FrameChain {
     for (auto const& section : sections.elements) sections_.emplace_back(section, element_length(), bar.pretension);
     for (Index e = 0; e < n; ++e)
       set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length()), "Se3Beam").axes);
-    bool offset = false;
-    for (auto const& section : sections.nodes) offset = offset || !section.centre.isZero(0.0);
-    if (!offset) return;
-    for (Index i = 0; i <= n; ++i) {  // from the axis to the centres of mass
-      centres_.push_back(sections.nodes[sections.nodes.size() == 1 ? 0 : std::size_t(i)].centre);
-      Mat3 const axes = rotation_matrix<double>(axes_of<double>(reference_, i));
-      for (int k = 0; k < 3; ++k)
-        reference_[std::size_t(7 * i + k)] += axes(k, 1) * centres_.back()[1] + axes(k, 2) * centres_.back()[2];
-    }
-    for (Index e = 0; e < n; ++e) free_[std::size_t(e)] = HelicoidalElement<double>(reference_, 7 * e).d;
+    if (move_to_centres(sections.nodes))
+      for (Index e = 0; e < n; ++e) free_[std::size_t(e)] = HelicoidalElement<double>(reference_, 7 * e).d;
   }
   HelicoidalSection const& section_of(Index e) const { return sections_[sections_.size() == 1 ? 0 : std::size_t(e)]; }
-  /// Vector from the line of the centres of mass to the point p, in section axes [m].
-  Vec3 from_centre(Point const& p) const {
-    if (centres_.empty()) return {0.0, p.y, p.z};
-    Vec3 const &a = centres_[std::size_t(p.element)], &b = centres_[std::size_t(p.element) + 1];
-    return {0.0, p.y - (1.0 - p.xi) * a[1] - p.xi * b[1], p.z - (1.0 - p.xi) * a[2] - p.xi * b[2]};
-  }
   /// Sets d₀ of element e; `middle` are the axes of the section of the curve in the middle of the element.
   template <class T>  // compiled only if used
   void set_free(Index e, Mat<T, 3, 3> const& middle) {
@@ -262,7 +248,6 @@ class Se3Beam : public FrameChain {
   }
 
   std::vector<HelicoidalSection> sections_;  ///< of all elements, or of each
-  std::vector<Vec3> centres_;                ///< centres of mass at the nodes; empty if all are on the axis
   std::vector<ScrewVector<double>> free_;    ///< d₀ of each element
 };
 

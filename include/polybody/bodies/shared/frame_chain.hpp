@@ -22,15 +22,15 @@ struct ChainSections {
   std::vector<CentredSection> nodes;     ///< at each node, or one for all
 };
 
-/// Sections of a bar of n elements. Unless `coupled`, matrices must be uncoupled and constant along the bar.
+/// Sections of a bar of n elements.
 /// \throws InvalidInput as `constants` and `centred`, and for a section of a shape or constants without all
 /// stiffnesses; `body` begins the message.
 template <class = void>  // compiled only if used
-[[gnu::cold]] ChainSections chain_sections(Bar const& bar, Index n, bool coupled, std::string const& body) {
+[[gnu::cold]] ChainSections chain_sections(Bar const& bar, Index n, std::string const& body) {
   Vec6 times;
   for (int i = 0; i < 6; ++i) times[i] = i == 0 ? bar.damping.axial : i < 4 ? bar.damping.shear : bar.damping.bending;
   auto const* const along = std::get_if<SectionAlong>(&bar.section);
-  if (!along || !coupled) {
+  if (!along) {
     BarConstants const c = constants(bar);
     CentredSection section{.mass = c.mass_per_length};
     Vec3 const rotary = rotary_inertias(c);
@@ -235,6 +235,25 @@ class FrameChain {
     double const xi = x - double(e);
     return {e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
   }
+  /// Vector from the line of the centres of mass to the point p, in section axes [m].
+  Vec3 from_centre(Point const& p) const {
+    if (centres_.empty()) return {0.0, p.y, p.z};
+    Vec3 const &a = centres_[std::size_t(p.element)], &b = centres_[std::size_t(p.element) + 1];
+    return {0.0, p.y - (1.0 - p.xi) * a[1] - p.xi * b[1], p.z - (1.0 - p.xi) * a[2] - p.xi * b[2]};
+  }
+  /// Moves the nodes of the reference from the axis of the bar to the centres of mass of their sections. Returns false
+  /// if all centres are on the axis.
+  template <class T = double>  // compiled only if used
+  bool move_to_centres(std::vector<detail::CentredSection> const& nodes) {
+    bool offset = false;
+    for (auto const& section : nodes) offset = offset || !section.centre.isZero(0.0);
+    for (Index i = 0; offset && i <= n_; ++i) {
+      centres_.push_back(nodes[nodes.size() == 1 ? 0 : std::size_t(i)].centre);
+      Vec<T, 3> const arm = product(rotation_matrix<T>(axes_of<T>(reference_, i)), centres_.back());
+      for (int k = 0; k < 3; ++k) reference_[std::size_t(7 * i + k)] += arm[k];
+    }
+    return offset;
+  }
   /// Unit quaternion of the section of node i.
   template <StateScalar T>
   static Quaternion<T> axes_of(std::span<T const> q, Index i) {
@@ -260,6 +279,7 @@ class FrameChain {
   }
 
   std::vector<double> reference_;  ///< coordinates of the undeformed beam
+  std::vector<Vec3> centres_;      ///< centres of mass at the nodes; empty if all are on the axis
 
  private:
   /// Aρ l/6 of element e [kg].

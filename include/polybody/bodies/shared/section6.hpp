@@ -29,9 +29,23 @@ struct Section6 {
   Mat<double, 6, 6> mass = Mat<double, 6, 6>::Zero();       ///< (6×6) mass per length [kg/m], [kg], [kg m]
   Vec6 damping_times = Vec6::Zero();                        ///< τ of each strain [s]; added to those of the bar
 
-  /// The same section at each arc length.
+  /// Returns this section for each arc length.
   Section6 const& operator()(double) const { return *this; }
 
+  /// Section in SI units, from matrices in seconds and the units `length` [m] and `force` [N].
+  template <class = void>  // compiled only if used
+  [[nodiscard]] Section6 in_units(double length, double force) const {
+    require_positive(length, "Section6: the unit of length");
+    require_positive(force, "Section6: the unit of force");
+    Section6 out = *this;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        double const arms = (i < 3 ? 1.0 : length) * (j < 3 ? 1.0 : length);
+        out.stiffness(i, j) *= force * arms;
+        out.mass(i, j) *= force / (length * length) * arms;
+      }
+    return out;
+  }
   /// Section whose own axis passes through (y, z) [m] of the bar's section, and whose own axes y and z are rotated by
   /// `angle` about x [rad]. The result is about the axis of the bar. Damping times are not transformed.
   template <class = void>  // compiled only if used
