@@ -125,13 +125,13 @@ class FrameChain {
   /// in messages.
   template <class Curve>  // compiled only if used
   FrameChain(Bar const& bar, BarConstants const& c, Index n, Curve const& curve, std::string const& body)
-      : constants_(c),
+      : reference_(std::size_t(7 * (n + 1))),
+        constants_(c),
         n_(n),
         length_(bar.length),
         l_(bar.length / double(n)),
         sixth_(c.mass_per_length * l_ / 6.0),
-        rotary_(rotary_inertias(c)),
-        reference_(std::size_t(7 * (n + 1))) {
+        rotary_(rotary_inertias(c)) {
     for (int i = 0; i < 3; ++i) rotary_[i] *= 0.5 * l_;
     std::span<double> const q(reference_);
     for (Index i = 0; i <= n; ++i) {
