@@ -4,9 +4,8 @@
 /// on SE(2).
 /// Theory: Eqs. 2.119, 2.120.
 
-#include <string_view>
-
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/shared/sections.hpp>
 #include <polybody/math/se3.hpp>
 
 namespace polybody::planar {
@@ -36,6 +35,14 @@ struct CircularArc : SimoVuQuoc {
       ddg = 0.25 * phi * phi * by_xx + 0.5 * by_x;
     }
   };
+
+  /// Derivatives r′ and r″ of the axis in the middle of an element of length l [m]. `chord` (2) [m] and `phi` [rad] are
+  /// the differences of position and angle of its nodes.
+  template <class T = double>  // compiled only if used
+  static AxisSlopes<2> axis_slopes(Vec<T, 2> const& chord, T phi, double l) {
+    double const stretch = Growth<T>(phi).g / l, bend = stretch * phi / l;
+    return {stretch * chord, bend * Vec<T, 2>(-chord[1], chord[0])};
+  }
 
   /// Strains ε, γ, κ, with p = (x′, y′, θ, θ′, φ) in the middle of the element.
   struct Section : SimoVuQuoc::Section {
@@ -92,8 +99,6 @@ class Se3Beam : public Beam<CircularArc> {
   using Base = Beam<CircularArc>;
 
  public:
-  static constexpr std::string_view family = "SE(3) beam in the plane";  ///< family in reports (`formulation_family`)
-
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], a placement that leaves the plane, or a bar without GA.
   static Se3Beam from(Bar const& bar, Index n) { return Se3Beam(Base::from(bar, n)); }

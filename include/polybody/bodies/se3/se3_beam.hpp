@@ -3,11 +3,10 @@
 /// Geometrically exact beam in space with one interpolation of position and rotation on SE(3).
 /// Theory: Eqs. 2.106 to 2.108, 2.117, 2.118.
 
-#include <string_view>
-
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/se3/helicoidal_section.hpp>
 #include <polybody/bodies/shared/frame_chain.hpp>
+#include <polybody/bodies/shared/sections.hpp>
 
 namespace polybody {
 
@@ -26,7 +25,6 @@ namespace polybody {
 class Se3Beam : public FrameChain {
  public:
   static constexpr bool objective = true;
-  static constexpr std::string_view family = "SE(3) beam";  ///< family in reports (`formulation_family`)
 
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], and unless GA, GA_z, GJ and EI_y of the bar are positive.
@@ -99,6 +97,16 @@ class Se3Beam : public FrameChain {
     Mat<T, 3, 3> const relative = exp_so3<T>(scaled<T>(element.d.rotation, p.xi));
     return {product(element.R, relative), scaled<T>(element.d.rotation, 1.0 / element_length()),
             detail::zeros<Vec<T, 3>>()};
+  }
+
+  /// Derivatives r′ = R p/l and r″ = R (φ × p)/l² of the axis at `p`, with d = (p, φ).
+  template <class T = double>  // compiled only if used
+  AxisSlopes<3> axis_slopes(Point const& p, std::span<T const> q) const {
+    HelicoidalElement<T> const element(q, 7 * p.element);
+    double const by_length = 1.0 / element_length();
+    Mat<T, 3, 3> const axes = product(element.R, exp_so3<T>(scaled<T>(element.d.rotation, p.xi)));
+    Vec<T, 3> const first = scaled<T>(product(axes, element.d.translation), by_length);
+    return {first, scaled<T>(cross<T>(product(axes, element.d.rotation), first), by_length)};
   }
 
   /// Marker kinematics: with the twist (U, Ω) of the section and ρ = R (0, y, z),
