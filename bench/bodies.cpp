@@ -66,6 +66,12 @@ Bar bar() {
           .material = Material{.density = 7800.0, .young = 2e11, .poisson = 0.3}};
 }
 
+Bar damped_bar() {
+  Bar damped = bar();
+  damped.damping = {.axial = 1e-4, .shear = 2e-4, .bending = 3e-4};
+  return damped;
+}
+
 template <class V>
 auto span(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
@@ -146,6 +152,8 @@ int main(int argc, char** argv) {
   add("Lrvf<RelativeRotation>", Lrvf<>::from(bar(), n));
   add("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
   add("Se3Beam", Se3Beam::from(bar(), n));
+  add("Lrvf<RelativeRotation>/damped", Lrvf<>::from(damped_bar(), n));
+  add("Se3Beam/damped", Se3Beam::from(damped_bar(), n));
   Structure const s = structure_of(bar(), 8);
   add("Ffr/modes:6", Ffr(s, fixed_interface_modes(s, 6)));
   add("Ffr/stiffening/modes:6", Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}));
@@ -153,6 +161,7 @@ int main(int argc, char** argv) {
   add("planar::Rigid", planar::Rigid::from(bar()));
   add("planar::AncfCable<>", planar::AncfCable<>::from(bar(), n));
   add("planar::Lrvf", planar::Lrvf::from(bar(), n));
+  add("planar::Se3Beam", planar::Se3Beam::from(bar(), n));
   add("planar::Ffr/nodal_coordinates:24", planar::Ffr::from(bar(), 8));
   return registered::run(argc, argv);
 }

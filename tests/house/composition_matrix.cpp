@@ -9,6 +9,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 using namespace polybody;
 
@@ -46,9 +47,10 @@ auto const policies =
 auto const bodies = std::tuple(
     Type<Rigid<>>{"Rigid<>"}, Type<Rigid<EulerParameters>>{"Rigid<EulerParameters>"}, Type<AncfCable<>>{"AncfCable"},
     Type<AncfBeam<ElasticLine>>{"AncfBeam<ElasticLine>"}, Type<AncfBeam<Continuum<>>>{"AncfBeam<Continuum>"},
-    Type<Lrvf<RelativeRotation>>{"Lrvf<RelativeRotation>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
-    Type<planar::Rigid>{"planar::Rigid"}, Type<planar::AncfCable<>>{"planar::AncfCable"},
-    Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
+    Type<Lrvf<RelativeRotation>>{"Lrvf<RelativeRotation>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"},
+    Type<Se3Beam>{"Se3Beam"}, Type<Ffr>{"Ffr"}, Type<planar::Rigid>{"planar::Rigid"},
+    Type<planar::AncfCable<>>{"planar::AncfCable"}, Type<planar::Lrvf>{"planar::Lrvf"},
+    Type<planar::Se3Beam>{"planar::Se3Beam"}, Type<planar::Ffr>{"planar::Ffr"});
 
 /// An integrator; `refuses` is the cell for models that it refuses for other reasons than their constraint equations.
 template <class I>

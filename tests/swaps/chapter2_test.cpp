@@ -1,6 +1,7 @@
 // The arm and the cantilever of Chapter 2 (examples/chapter2.hpp) for each planar body and integrator; the pin of the
 // arm is ideal or stiff.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../examples/chapter2.hpp"
 #include "support/swapped_pendulum.hpp"
@@ -51,9 +52,11 @@ Count cantilever() {
 TEST(SwapsOfChapter2, RigidArm) { EXPECT_EQ(arm<planar::Rigid>(), (Count{30, 10})); }
 TEST(SwapsOfChapter2, ArmOfCables) { EXPECT_EQ(arm<planar::AncfCable<>>(), (Count{30, 10})); }
 TEST(SwapsOfChapter2, ArmOfLargeRotationVectors) { EXPECT_EQ(arm<planar::Lrvf>(), (Count{30, 10})); }
+TEST(SwapsOfChapter2, ArmOfCircularArcs) { EXPECT_EQ(arm<planar::Se3Beam>(), (Count{30, 10})); }
 TEST(SwapsOfChapter2, ArmOnAFloatingFrame) { EXPECT_EQ(arm<planar::Ffr>(), (Count{24, 16})); }
 TEST(SwapsOfChapter2, CantileverOfCables) { EXPECT_EQ(cantilever<planar::AncfCable<>>(), (Count{15, 5})); }
 TEST(SwapsOfChapter2, CantileverOfLargeRotationVectors) { EXPECT_EQ(cantilever<planar::Lrvf>(), (Count{15, 5})); }
+TEST(SwapsOfChapter2, CantileverOfCircularArcs) { EXPECT_EQ(cantilever<planar::Se3Beam>(), (Count{15, 5})); }
 TEST(SwapsOfChapter2, CantileverOnAFloatingFrame) { EXPECT_EQ(cantilever<planar::Ffr>(), (Count{12, 8})); }
 
 }  // namespace polybody::chapter2_test

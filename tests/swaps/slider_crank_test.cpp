@@ -1,6 +1,7 @@
 // A slider-crank whose coupler is pinned at both ends: one line swaps the coupler, the policy of its pins or the
 // integrator.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "support/swapped_pendulum.hpp"
 
@@ -50,6 +51,7 @@ TEST(SwapsOfTheSliderCrank, EachCoupler) {
   with(planar::AncfCable<>::from(bar));
   with(planar::AncfCable<EngineeringStrain>::from(bar));
   with(planar::Lrvf::from(bar));
+  with(planar::Se3Beam::from(bar));
 }
 
 /// Tries each policy for the pins of a rigid and a flexible coupler.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Comparison of the position mesh and the implied curve of an LRVF beam, in the plane and in space.
+/// Comparison of the position mesh and the implied curve of a geometrically exact beam, in the plane and in space.
 ///
 /// The implied curve is the space curve that follows from a rotation field [thesis §2.3]. Its tangent is the first axis
 /// of the sections, t = R e₁:
@@ -15,6 +15,7 @@
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/shared/sections.hpp>
 #include <polybody/math/element_functions.hpp>
 
 namespace polybody {
@@ -76,16 +77,22 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
   return curve;
 }
 
+/// Beam in space with a rotation field: `Lrvf` with a `NodalInterpolation`, and `Se3Beam`.
+template <class B>
+concept HasRotationField =
+    std::derived_from<B, FrameChain> && requires(B const b, typename B::Point p, std::span<double const> q) {
+      { b.rotation_field(p, q) } -> std::convertible_to<SectionTurn>;
+    };
+
 /// Points of the curve that the rotation field of a beam implies at the coordinates q: the first node and `samples`
 /// points in each element.
-template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
-std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,
-                                int samples = 1) {
+template <HasRotationField B>
+std::vector<Vec3> implied_curve(B const& beam, std::span<double const> q, int samples = 1) {
   auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };
   return implied_curve(rotation, beam.length(), beam.elements() * samples, part<3>(q, 0));
 }
 
-/// Position mesh and implied curve of an LRVF beam in the plane (dim = 2) or in space (dim = 3), in world axes. The
+/// Position mesh and implied curve of a beam in the plane (dim = 2) or in space (dim = 3), in world axes. The
 /// position field of the beam gives the position mesh. The rotation field of the beam, with the tangent t₁, implies
 /// another curve,
 ///   r(s) = r(0) + ∫ t₁ ds [thesis Eq. 2.2, 2.17].
@@ -107,25 +114,31 @@ using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< diagnostics of spatial beams
 
 namespace detail {
 
-/// Adds the position node and the rotation node of the next material point to d. Updates the largest distance, and adds
-/// the arc length and the curvature of the element of length l before this point.
+/// Adds the position node and the rotation node of the next material point to d, and updates the largest distance.
 template <int dim>
-void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const& position,
+void add_nodes(TwoMeshes<dim>& d, typename TwoMeshes<dim>::Point const& position,
                typename TwoMeshes<dim>::Point const& rotation) {
   double gap = 0.0;
   for (int k = 0; k < dim; ++k) gap = std::hypot(gap, position[k] - rotation[k]);
   d.largest_gap = std::max(d.largest_gap, gap);
   d.rotation_nodes.push_back(rotation);
   d.position_nodes.push_back(position);
-  if (d.position_nodes.size() < 2) return;
-  ShapeValues<2> const n = linear_shape(0.5, l);
-  auto const& last = d.position_nodes[d.position_nodes.size() - 2];
+}
+/// Derivatives of the position on the straight line between the last two nodes of an element of length l.
+template <int dim>
+AxisSlopes<dim> slopes_of_chord(TwoMeshes<dim> const& d, double l) {
+  AxisSlopes<dim> s{(d.position_nodes.back() - *(d.position_nodes.end() - 2)) / l, {}};
+  s.second.setZero();
+  return s;
+}
+/// Adds the arc length and the curvature of the axis of the next element of length l, of constant |r′| and |r″|.
+template <int dim>
+void add_axis(TwoMeshes<dim>& d, double l, AxisSlopes<dim> const& s) {
   double first = 0.0, second = 0.0, mixed = 0.0;  // r′·r′, r″·r″, r′·r″
   for (int k = 0; k < dim; ++k) {
-    double const slope = n.ds[0] * last[k] + n.ds[1] * position[k], bend = n.dds[0] * last[k] + n.dds[1] * position[k];
-    first += slope * slope;
-    second += bend * bend;
-    mixed += slope * bend;
+    first += s.first[k] * s.first[k];
+    second += s.second[k] * s.second[k];
+    mixed += s.first[k] * s.second[k];
   }
   d.position_length += std::sqrt(first) * l;
   d.position_curvature.push_back(std::sqrt(std::max(0.0, first * second - mixed * mixed)) / std::pow(first, 1.5));
@@ -164,23 +177,36 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
   d.rotation_length = beam.length();
   std::vector<Vec2> const implied = implied_curve(beam, q);
   for (std::size_t i = 0; i < implied.size(); ++i) {
-    detail::add_nodes<2>(d, l, Vec2(q[3 * i], q[3 * i + 1]), implied[i]);
-    if (i > 0) d.rotation_curvature.push_back((q[3 * i + 2] - q[3 * i - 1]) / l);
+    detail::add_nodes<2>(d, Vec2(q[3 * i], q[3 * i + 1]), implied[i]);
+    if (i == 0) continue;
+    double const turn = q[3 * i + 2] - q[3 * i - 1];
+    d.rotation_curvature.push_back(turn / l);
+    AxisSlopes<2> slopes = detail::slopes_of_chord<2>(d, l);
+    if constexpr (requires { Theory::axis_slopes(slopes.first, turn, l); })
+      slopes = Theory::axis_slopes(Vec2(l * slopes.first), turn, l);
+    detail::add_axis<2>(d, l, slopes);
   }
   return d;
 }
 
 /// Position mesh and implied curve of a spatial beam at the coordinates q. The rotation field is that of the beam's
-/// interpolation. If the reference configuration is curved, the position mesh is the polygon through the nodes, and the
-/// implied curve includes the curvature of the reference configuration.
-template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
-SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
+/// interpolation. The position mesh of `Lrvf` is the polygon through the nodes, that of `Se3Beam` consists of helices.
+/// If the reference configuration is curved, the implied curve includes its curvature.
+template <HasRotationField B>
+SpatialMeshDiagnostics mesh_diagnostics(B const& beam, std::span<double const> q) {
   SpatialMeshDiagnostics d;
+  double const l = beam.element_length();
   d.rotation_length = beam.length();
   std::vector<Vec3> const implied = implied_curve(beam, q);
   for (std::size_t i = 0; i < implied.size(); ++i) {
-    detail::add_nodes<3>(d, beam.element_length(), Vec3(part<3>(q, 7 * Index(i))), implied[i]);
-    if (i > 0) d.rotation_curvature.push_back(implied_curvature(beam.rotation_field({Index(i) - 1, 0.5, 0.0, 0.0}, q)));
+    detail::add_nodes<3>(d, Vec3(part<3>(q, 7 * Index(i))), implied[i]);
+    if (i == 0) continue;
+    typename B::Point const middle{Index(i) - 1, 0.5, 0.0, 0.0};
+    d.rotation_curvature.push_back(implied_curvature(beam.rotation_field(middle, q)));
+    if constexpr (requires { beam.axis_slopes(middle, q); })
+      detail::add_axis<3>(d, l, beam.axis_slopes(middle, q));
+    else
+      detail::add_axis<3>(d, l, detail::slopes_of_chord<3>(d, l));
   }
   return d;
 }

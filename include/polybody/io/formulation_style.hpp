@@ -25,9 +25,9 @@ struct FormulationStyle {
   bool open() const { return marker >= 4 && marker % 2 == 0; }
 };
 
-/// Styles of all families. A colour has the marker that plot.hpp gives to it. If two families share a colour, the
-/// second one has an open marker and a dashed line.
-inline constexpr std::array<FormulationStyle, 10> formulation_styles{{
+/// Styles of all families. A colour has the marker that plot.hpp gives to it. If two families share a colour, one of
+/// them has an open marker, the other one a filled marker, and the line of the second one is dashed.
+inline constexpr std::array<FormulationStyle, 12> formulation_styles{{
     {families::lrvf, 0, detail::point_types[0], ""},
     {families::lrvf_in_space, 0, detail::point_types[0] - 1, "9 3"},
     {families::cable_engineering, 1, detail::point_types[1], ""},
@@ -37,6 +37,8 @@ inline constexpr std::array<FormulationStyle, 10> formulation_styles{{
     {families::ffr_modal, 4, detail::point_types[4] - 1, "9 3"},
     {families::beam_continuum, 5, detail::point_types[5], ""},
     {families::rigid, 6, detail::point_types[6], ""},
+    {families::se3_beam, 7, detail::point_types[7], ""},
+    {families::se3_beam_in_space, 7, detail::point_types[7] + 1, "9 3"},
     {families::other, -1, 2, ""},
 }};
 

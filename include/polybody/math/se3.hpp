@@ -256,35 +256,50 @@ ScrewMap<T> screw_map(OperatorSeries<T> const& c, ScrewVector<T> const& d) {
 }
 
 /// Derivative D₀(φ, y) = ∂((1 + f φ̃ + g φ̃²) y)/∂φ at constant y, 3×3:
-///   2 (f′ φ × y + g′ φ × (φ × y)) φᵀ − f ỹ − g ((φ × y)~ + φ̃ ỹ).
+///   u φᵀ + g (φ yᵀ + φ·y 1) − f ỹ,  u = 2 (f′ φ × y + g′ φ × (φ × y) − g y).
 template <class T>
 Mat<T, 3, 3> map_derivative(OperatorSeries<T> const& c, Vec<T, 3> const& phi, Vec<T, 3> const& y) {
   Vec<T, 3> const once = cross(phi, y), twice = cross(phi, once);
-  Mat<T, 3, 3> const of_y = skew(y), of_once = skew(once), both = skew_of_skew(phi, y);
+  T const along = c.g * dot(phi, y);
+  Vec<T, 3> u, scaled_phi;
+  for (int i = 0; i < 3; ++i) {
+    u[i] = 2.0 * (c.df * once[i] + c.dg * twice[i] - c.g * y[i]);
+    scaled_phi[i] = c.g * phi[i];
+  }
   Mat<T, 3, 3> d;
   for (int i = 0; i < 3; ++i) {
-    T const along = 2.0 * (c.df * once[i] + c.dg * twice[i]);
-    for (int j = 0; j < 3; ++j) d(i, j) = along * phi[j] - c.f * of_y(i, j) - c.g * (of_once(i, j) + both(i, j));
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    T const skewed = c.f * y[k];
+    d(i, i) = u[i] * phi[i] + scaled_phi[i] * y[i] + along;
+    d(j, i) = u[j] * phi[i] + scaled_phi[j] * y[i] - skewed;
+    d(i, j) = u[i] * phi[j] + scaled_phi[i] * y[j] + skewed;
   }
   return d;
 }
-/// Derivative of D₀(φ, y) for φ in the direction p, at constant y (3×3).
+/// Derivative of D₀(φ, y) for φ in the direction p, at constant y (3×3). With the derivatives u˙ of u and g˙ = 2 φ·p g′
+/// of g:
+///   u˙ φᵀ + u pᵀ + (g˙ φ + g p) yᵀ + (g˙ φ·y + g p·y) 1 − 2 φ·p f′ ỹ.
 template <class T>
 Mat<T, 3, 3> map_second_derivative(OperatorSeries<T> const& c, ScrewVector<T> const& d, Vec<T, 3> const& y) {
   Vec<T, 3> const &p = d.translation, &phi = d.rotation;
-  T const twofold = 2.0 * dot(phi, p);
+  T const twofold = 2.0 * dot(phi, p), odd = twofold * c.df, even = twofold * c.dg;
+  T const along = even * dot(phi, y) + c.g * dot(p, y);
   Vec<T, 3> const once = cross(phi, y), twice = cross(phi, once), by_p = cross(p, y);
   Vec<T, 3> const mixed1 = cross(p, once), mixed2 = cross(phi, by_p);
-  Mat<T, 3, 3> const of_y = skew(y), of_once = skew(once), both = skew_of_skew(phi, y), of_by_p = skew(by_p),
-                     both_p = skew_of_skew(p, y);
+  Vec<T, 3> u, slope, w;  // u, u˙ and g˙ φ + g p
+  for (int i = 0; i < 3; ++i) {
+    u[i] = 2.0 * (c.df * once[i] + c.dg * twice[i] - c.g * y[i]);
+    slope[i] = 2.0 * (c.df * by_p[i] + c.dg * (mixed1[i] + mixed2[i]) - even * y[i] +
+                      twofold * (c.ddf * once[i] + c.ddg * twice[i]));
+    w[i] = even * phi[i] + c.g * p[i];
+  }
   Mat<T, 3, 3> m;
   for (int i = 0; i < 3; ++i) {
-    T const of_phi =
-        2.0 * (c.df * by_p[i] + c.dg * (mixed1[i] + mixed2[i])) + 2.0 * twofold * (c.ddf * once[i] + c.ddg * twice[i]);
-    T const of_p = 2.0 * (c.df * once[i] + c.dg * twice[i]);
-    for (int j = 0; j < 3; ++j)
-      m(i, j) = of_phi * phi[j] + of_p * p[j] - twofold * (c.df * of_y(i, j) + c.dg * (of_once(i, j) + both(i, j))) -
-                c.g * (of_by_p(i, j) + both_p(i, j));
+    int const j = (i + 1) % 3, k = (i + 2) % 3;
+    T const skewed = odd * y[k];
+    m(i, i) = slope[i] * phi[i] + u[i] * p[i] + w[i] * y[i] + along;
+    m(j, i) = slope[j] * phi[i] + u[j] * p[i] + w[j] * y[i] - skewed;
+    m(i, j) = slope[i] * phi[j] + u[i] * p[j] + w[i] * y[j] + skewed;
   }
   return m;
 }

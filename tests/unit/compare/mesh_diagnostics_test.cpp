@@ -1,4 +1,5 @@
 #include <polybody/compare/mesh_diagnostics.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +121,31 @@ TEST(SpatialMeshDiagnostics, AHelixHasItsCurvatureAndItsChords) {
   EXPECT_LT(d.position_length, 1.999);
   ASSERT_EQ(d.rotation_curvature.size(), std::size_t(n));
   for (double c : d.rotation_curvature) EXPECT_NEAR(c, kappa, 1e-13);
+}
+
+// The axis of a beam on SE(3) is this helix, in the plane a circle: length and curvature are those of the curve.
+TEST(SpatialMeshDiagnostics, ElementsOfASe3BeamAreHelicesAndArcs) {
+  Bar const bar{.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}};
+  Vec3 const phi(0.6, -0.5, 1.2);
+  VecX const q = nodes_of(3, [&](double i) {
+    double const s = 2.0 / 3.0 * i;
+    return Placement{1.1 * s * left_jacobian<double>(s * phi).col(0), exp_so3<double>(s * phi)};
+  });
+  SpatialMeshDiagnostics const d = mesh_diagnostics(Se3Beam::from(bar, 3), numbers(q));
+  EXPECT_NEAR(d.position_length, 2.2, 1e-13);
+  EXPECT_NEAR(d.largest_gap, 0.1 * 2.0 * (left_jacobian<double>(2.0 * phi).col(0)).norm(), 1e-13);
+  for (double c : d.position_curvature) EXPECT_NEAR(c, 1.3 / 1.1, 1e-13);
+  for (double c : d.rotation_curvature) EXPECT_NEAR(c, 1.3, 1e-13);
+  double const k = 0.7;
+  std::vector<double> arc;
+  for (int i = 0; i <= 4; ++i) {
+    double const s = 0.5 * i;
+    arc.insert(arc.end(), {1.1 * std::sin(k * s) / k, 1.1 * (1.0 - std::cos(k * s)) / k, k * s});
+  }
+  MeshDiagnostics const plane = mesh_diagnostics(planar::Se3Beam::from(bar, 4), arc);
+  EXPECT_NEAR(plane.position_length, 2.2, 1e-13);
+  for (double c : plane.position_curvature) EXPECT_NEAR(c, k / 1.1, 1e-13);
+  for (double c : plane.rotation_curvature) EXPECT_NEAR(c, k, 1e-13);
 }
 
 // Curved reference configuration: a stress-free helix has these chords, and no distance between the meshes.

@@ -246,6 +246,8 @@ TEST(FormulationStyles, AreFixedAndDistinct) {
   static_assert(formulation_family<planar::Lrvf> == families::lrvf);
   static_assert(formulation_family<planar::FullLrvf> == families::lrvf);
   static_assert(formulation_family<Lrvf<>> == families::lrvf_in_space);
+  static_assert(formulation_family<Se3Beam> == families::se3_beam_in_space);
+  static_assert(formulation_family<planar::Se3Beam> == families::se3_beam);
   static_assert(formulation_family<planar::AncfCable<>> == families::cable_green);
   static_assert(formulation_family<AncfCable<EngineeringStrain>> == families::cable_engineering);
   static_assert(formulation_family<planar::AncfCable<EngineeringStrain>> == families::cable_engineering);

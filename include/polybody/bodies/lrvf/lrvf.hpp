@@ -9,6 +9,7 @@
 
 #include <polybody/bodies/lrvf/direct_interpolation.hpp>
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
+#include <polybody/bodies/shared/frame_chain.hpp>
 
 namespace polybody {
 
@@ -35,27 +36,9 @@ namespace polybody {
 /// the chord c₀ of the element in the reference. R′ is the derivative with respect to the arc length. Uniform stretch
 /// and uniform bending of a circular arc are then exact. Integrals extend over l.
 template <RotationInterpolation Interpolation = RelativeRotation, StrainQuadrature Quadrature = ReducedQuadrature>
-class Lrvf {
+class Lrvf : public FrameChain {
  public:
-  static constexpr World world = World::space;
-  static constexpr MarkerKind observes = MarkerKind::frame;
-  static constexpr bool constant_mass = true;
   static constexpr bool objective = Interpolation::objective;
-  static constexpr int element_columns = 12;
-  static constexpr int point_columns = 12;
-  static constexpr int element_stride = 6;
-  static constexpr bool vectorised_kernels = false;
-  static constexpr Index default_elements = 32;  ///< number of elements of `from(bar)` (`BarMesh`)
-  template <class T>
-  using Element = Vec<T, 12>;
-  using ElementMatrix = Mat<double, 12, 12>;
-
-  /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
-  struct Point {
-    Index element = 0;        ///< index of the element, counted from the first end of the bar
-    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
-    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the section [m]
-  };
 
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], and unless GA, GA_z, GJ and EI_y of the bar are positive.
@@ -72,50 +55,27 @@ class Lrvf {
   /// farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
-    if (!curve)
-      throw InvalidInput("reference_curve.missing", {ErrorObject{"Lrvf"},
-                                                     ": the reference curve is an empty function. Pass a function that "
-                                                     "returns a Placement for each arc length s."});
-    return Lrvf(bar, polybody::constants(bar), n, curve);
+    require_curve(curve, "Lrvf");
+    return Lrvf(bar, detail::chain_sections(bar, n, "Lrvf"), n, curve);
   }
-
-  double length() const { return length_; }
-  double element_length() const { return l_; }
-  BarConstants const& constants() const { return constants_; }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
   /// \throws InvalidInput for s outside the bar. With `Incremental` s must be a node or the middle of an element.
   Point at(double s, double y = 0.0, double z = 0.0) const {
-    double const x = require_inside(s, length_, "Lrvf") / l_;
-    require_finite(y, "Lrvf: y of a point");
-    require_finite(z, "Lrvf: z of a point");
-    Index const e = std::min(Index(x + 1e-12), elements() - 1);
-    double const xi = x - double(e);
-    Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
+    Point const p = point_at(s, y, z, "Lrvf");
     if constexpr (PathDependentInterpolation<Interpolation>) interpolation_.require_known(p.xi, s);
     return p;
   }
 
   Index coordinates() const { return Index(reference_.size()); }
-  Index velocities() const { return 6 * (elements() + 1); }
   char const* coordinate_unit(Index i) const {
-    if (i < detail::carried_at(elements(), 0)) return i % 7 < 3 ? "m" : "1";
+    if (i < detail::carried_at(elements(), 0)) return FrameChain::coordinate_unit(i);
     return i % 7 < 4 ? "1" : "rad";  // of the section stored in an element
   }
-  char const* velocity_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
-  Index elements() const { return elastic_.size(); }
-  Index first_column(Index e) const { return 6 * e; }
-  Index first_column(Point const& p) const { return first_column(p.element); }
-
-  void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
 
   template <StateScalar T>
   void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
-    for (Index i = 0; i <= elements(); ++i) {
-      for (int k = 0; k < 3; ++k)
-        out[std::size_t(7 * i + k)] = q[std::size_t(7 * i + k)] + delta[std::size_t(6 * i + k)];
-      set_entries<4>(out, 7 * i + 3, quaternion_plus<T>(turned<T>(q, i), entries<3>(delta, 6 * i + 3)));
-    }
+    FrameChain::plus<T>(q, delta, out);
     if constexpr (PathDependentInterpolation<Interpolation>)
       for (Index e = 0; e < elements(); ++e)
         detail::set_carried_section<T>(
@@ -123,49 +83,11 @@ class Lrvf {
             interpolation_.template plus<T>(detail::carried_section<T>(q, elements(), e), entries<3>(delta, 6 * e + 3),
                                             entries<3>(delta, 6 * e + 9)));
   }
-  /// Rate δ˙ for which q ⊞ δ(t) moves with the generalised velocities v: Ω = Jr(δ) δ˙ at each node.
-  template <StateScalar T>
-  void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
-    for (Index i = 0; i < velocities(); i += 6) {
-      set_entries<3>(out, i, entries<3>(v, i));
-      set_entries<3>(out, i + 3, product(right_jacobian_inverse<T>(entries<3>(delta, i + 3)), entries<3>(v, i + 3)));
-    }
-  }
-  template <class T = double>  // compiled only if used
-  void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
-    for (Index i = 0; i <= elements(); ++i) {
-      Vec<T, 3> const turning = cross<T>(omega, entries<3>(q, 7 * i));
-      for (int k = 0; k < 3; ++k) v[6 * i + k] = v0[k] + turning[k];
-      set_entries<3>(v, 6 * i + 3, transposed_product<T>(rotation_matrix<T>(turned<double>(q, i)), omega));
-    }
-  }
-
-  void mass(Index, std::span<double const>, ElementMatrix& m) const {
-    m.setZero();
-    for (int i = 0; i < 3; ++i) {
-      m(i, i) = m(6 + i, 6 + i) = 2.0 * sixth_;
-      m(i, 6 + i) = m(6 + i, i) = sixth_;
-      m(3 + i, 3 + i) = m(9 + i, 9 + i) = rotary_[i];
-    }
-  }
-  template <StateScalar T>
-  void inertia(Index e, std::span<T const>, std::span<T const> a, Element<T>& out) const {
-    T const* const x = a.data() + 6 * e;
-    for (int i = 0; i < 3; ++i) {
-      out[i] = (2.0 * x[i] + x[6 + i]) * sixth_;
-      out[6 + i] = (x[i] + 2.0 * x[6 + i]) * sixth_;
-      out[3 + i] = x[3 + i] * rotary_[i];
-      out[9 + i] = x[9 + i] * rotary_[i];
-    }
-  }
 
   /// Elastic and damping force (elastic_elements.hpp), and −Ω × J Ω at the nodes.
   template <StateScalar T>
   void force(Index e, std::span<T const> q, std::span<T const> v, Element<T>& out) const {
-    auto const gyro = [&](int i) {
-      Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
-      return cross(spun(omega), omega);
-    };
+    auto const gyro = [&](int i) { return gyroscopic_moment<T>(e + i, v); };
     elastic_.template force<T>(e, q, v, gyro, out);
   }
 
@@ -175,45 +97,25 @@ class Lrvf {
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     elastic_.template tangent<T>(e, q, v, ck, cd, k);
-    for (int i = 0; i < 2; ++i) {  // ∂(Ω × J Ω)/∂Ω = Ω̃ J − (J Ω)~
-      Vec<T, 3> const omega = entries<3>(v, 6 * (e + i) + 3);
-      Mat<T, 3, 3> const of_omega = skew<T>(omega), of_momentum = skew<T>(spun<T>(omega));
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r)
-          k(6 * i + 3 + r, 6 * i + 3 + c) += cd * (of_omega(r, c) * rotary_[c] - of_momentum(r, c));
-    }
+    add_gyroscopic_tangent<T>(e, v, cd, k);
   }
 
-  template <StateScalar T>
-  void gravity(Index, std::span<T const>, Vec3 const& g, Element<T>& out) const {
-    out = detail::zeros<Element<T>>();
-    for (int i = 0; i < 3; ++i) out[i] = out[6 + i] = T(3.0 * sixth_ * g[i]);
-  }
-
-  template <class T = double>  // compiled only if used
-  double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
-    Vec<T, 3> const v1 = entries<3>(v, 6 * e), w1 = entries<3>(v, 6 * e + 3), v2 = entries<3>(v, 6 * e + 6),
-                    w2 = entries<3>(v, 6 * e + 9);
-    return sixth_ * (squared_norm(v1) + dot(v1, v2) + squared_norm(v2)) + 0.5 * (dot(spun(w1), w1) + dot(spun(w2), w2));
-  }
   double strain_energy(Index e, std::span<double const> q) const { return elastic_.energy(e, q); }
-  template <class T = double>  // compiled only if used
-  double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
-    Vec<T, 3> const r1 = entries<3>(q, 7 * e), r2 = entries<3>(q, 7 * e + 7);
-    return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
-  }
 
   /// Strains (Γ, K) in the middle of the element of `p`, in the axes of the middle section [1], [1/m] (`HasSections`).
-  Vec6 section_strains(Point const& p, std::span<double const> q) const { return elastic_.strains(p.element, q); }
+  Vec6 section_strains(Point const& p, std::span<double const> q) const {
+    return section_of(p.element).axis_strains(elastic_.strains(p.element, q));
+  }
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    return section_.forces(section_strains(p, q));
+    return section_of(p.element).forces(elastic_.strains(p.element, q));
   }
   /// Rotation field at `p`. Its curvature includes the curvature of the reference.
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const
     requires NodalInterpolation<Interpolation>
   {
-    return interpolation_.turn(p.xi, l_, turned<double>(q, p.element), turned<double>(q, p.element + 1));
+    return interpolation_.turn(p.xi, element_length(), axes_of<double>(q, p.element),
+                               axes_of<double>(q, p.element + 1));
   }
 
   /// Marker kinematics: r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias = [ω˙ᵇ × ρ + ω × (ω × ρ); ω˙ᵇ],
@@ -230,7 +132,8 @@ class Lrvf {
     Vec<T, 3> const w = detail::of_nodes(spin, turning);
     Vec<T, 3> arm, bias = detail::zeros<Vec<T, 3>>();
     if (inside(p)) bias = product(s.R, interpolation_.template bias<T>(s, turning));
-    for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
+    Vec3 const off = from_centre(p);
+    for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * off[1] + s.R(i, 2) * off[2];
     Vec<T, 3> const rate = cross(w, arm), tangential = cross(bias, arm), centripetal = cross(w, rate);
     for (int i = 0; i < 3; ++i) {
       out.frame.r[i] = q[7 * e + i] * (1.0 - p.xi) + q[7 * e + 7 + i] * p.xi + arm[i];
@@ -266,7 +169,7 @@ class Lrvf {
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Section<T> s;
     section<T>(p, q, s);
-    Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
+    Vec<T, 3> const off = from_centre(p), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
     Vec<T, 3> c = cross(off, f);
     Mat<T, 3, 3> by_turn = skew_of_skew(off, f);
     Mat<T, 3, 3> const of_m = skew(m);
@@ -285,22 +188,13 @@ class Lrvf {
  private:
   template <class T>
   using Section = typename Interpolation::template Section<T>;
-  Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve);
+  Lrvf(Bar const& bar, detail::ChainSections const& sections, Index n, ReferenceCurve const& curve);
 
-  template <StateScalar T>
-  static Quaternion<T> turned(std::span<T const> q, Index node) {
-    return detail::turned<T>(q, node);
-  }
   static bool inside(Point const& p) { return p.xi != 0.0 && p.xi != 1.0; }
-  /// Angular momentum J Ω of a node.
-  template <class T>
-  Vec<T, 3> spun(Vec<T, 3> const& omega) const {
-    return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
-  }
   /// Section at p: at a node exactly the section of the node, elsewhere the section of the interpolation.
   template <StateScalar T>
   void section(Point const& p, std::span<T const> q, Section<T>& out) const {
-    Quaternion<T> const a = turned<T>(q, p.element), b = turned<T>(q, p.element + 1);
+    Quaternion<T> const a = axes_of<T>(q, p.element), b = axes_of<T>(q, p.element + 1);
     if constexpr (PathDependentInterpolation<Interpolation>) {
       if (inside(p))
         return interpolation_.template section<T>(detail::carried_section<T>(q, elements(), p.element), out);
@@ -312,52 +206,47 @@ class Lrvf {
     for (int i = 0; i < 3; ++i) out.spin(i, p.xi == 0.0 ? i : 3 + i) = T(1.0);
   }
 
-  BarConstants constants_;
-  double length_, l_;
+  LrvfSection const& section_of(Index e) const { return sections_[sections_.size() == 1 ? 0 : std::size_t(e)]; }
+
   Interpolation interpolation_;
-  LrvfSection section_;
+  std::vector<LrvfSection> sections_;  ///< of all elements, or of each
   ElasticElements<Interpolation, Quadrature> elastic_;
-  double sixth_ = 0.0;  ///< Aρ l/6 [kg]
-  Vec3 rotary_;         ///< J of half an element at a node [kg m²]
-  std::vector<double> reference_;
 };
 
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
-Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Index n, ReferenceCurve const& curve)
-    : constants_(c),
-      length_(bar.length),
-      l_(bar.length / double(n)),
+Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, detail::ChainSections const& sections, Index n,
+                                      ReferenceCurve const& curve)
+    : FrameChain(bar, sections, n, curve, "Lrvf"),
       interpolation_(bar.placement),
-      section_(bar, c, l_),
-      elastic_(section_, bar.placement, l_, n),
-      reference_(std::size_t(PathDependentInterpolation<Interpolation> ? detail::carried_at(n, n) : 7 * (n + 1))) {
-  sixth_ = c.mass_per_length * l_ / 6.0;
-  Vec3 const inertias = rotary_inertias(c);
-  for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * inertias[i];
-  std::span<double> const q(reference_);
-  Mat<double, 3, 3> const axes = bar.placement.axes;
-  for (Index i = 0; i <= n; ++i) {
-    Placement const section = curve(double(i) * l_);
-    section.check("Lrvf: the reference curve");
-    Vec<double, 3> const along = product(axes, section.origin);
-    for (int k = 0; k < 3; ++k) q[std::size_t(7 * i + k)] = bar.placement.origin[k] + along[k];
-    set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
-  }
-  if constexpr (PathDependentInterpolation<Interpolation>)
+      sections_([&] {
+        std::vector<LrvfSection> all;
+        for (auto const& section : sections.elements) all.emplace_back(section, element_length(), bar.pretension);
+        return all;
+      }()),
+      elastic_(sections_, bar.placement, element_length(), n) {
+  if constexpr (PathDependentInterpolation<Interpolation>) {
+    reference_.resize(std::size_t(detail::carried_at(n, n)));
+    std::span<double> const nodes(reference_);
     for (Index e = 0; e < n; ++e)
       detail::set_carried_section<double>(
-          q, n, e, interpolation_.between(detail::turned<double>(q, e), detail::turned<double>(q, e + 1)));
+          nodes, n, e, interpolation_.between(axes_of<double>(nodes, e), axes_of<double>(nodes, e + 1)));
+  }
+  std::span<double const> const q(reference_);
+  double const l = element_length();
   char const* const advice =
       ", but the chord must be positive and no longer than the arc. The argument of the reference curve must be its "
       "arc length. Use more elements on a closed curve.";
   for (Index e = 0; e < n; ++e) {
     double const chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
-    if (!(chord > 1e-6 * l_ && chord < (1.0 + 1e-6) * l_))
+    if (!(chord > 1e-6 * l && chord < (1.0 + 1e-6) * l))
       throw InvalidInput("reference_curve.arc_length",
-                         {ErrorObject{"Lrvf"}, ": element ", double(e), ", counted from 0, of arc length ", l_,
+                         {ErrorObject{"Lrvf"}, ": element ", double(e), ", counted from 0, of arc length ", l,
                           " m has a chord of ", ErrorValue{chord}, " m", advice});
-    elastic_.set_free(e, std::span<double const>(q), chord);
+    elastic_.set_free(e, q, chord);
   }
+  if (move_to_centres(sections.nodes))
+    for (Index e = 0; e < n; ++e)
+      elastic_.set_free(e, q, std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e)))));
 }
 
 }  // namespace polybody

@@ -8,57 +8,22 @@
 ///   δφ = X δθ₂ − Xᵀ δθ₁,  δp = Xᵀ R₁ᵀ (δr₂ − δr₁) + Y δθ₂ − Yᵀ δθ₁.
 /// Theory: Eqs. 2.107 to 2.113.
 
-#include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/rod_section.hpp>
 #include <polybody/math/se3.hpp>
 
 namespace polybody {
 
-/// Stiffness, damping and pretension of a section, for elements of one length.
-class HelicoidalSection {
+/// Section of an element of `Se3Beam`.
+class HelicoidalSection : public RodSection {
  public:
-  /// Section for elements of arc length `l`.
-  /// \throws InvalidInput unless EA, GA, GA_z, GJ, EI_y and EI are positive.
-  template <class T = double>  // compiled only if used
-  HelicoidalSection(Bar const& bar, BarConstants const& c, T l) : l_(l), pretension_(bar.pretension) {
-    double const shear = bar.damping.shear, bending = bar.damping.bending;
-    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
-    double const time[] = {bar.damping.axial, shear, shear, shear, bending, bending};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i) {
-      require_positive(stiffness[i], std::string("Se3Beam: the stiffness ") + names[i] + " of the bar");
-      stiffness_[i] = stiffness[i];
-      time_[i] = time[i];
-      damped_ = damped_ || time[i] != 0.0;
-    }
-  }
+  using RodSection::RodSection;
 
-  double length() const { return l_; }                       ///< arc length of an element [m]
-  bool damped() const { return damped_; }                    ///< true if a damping time is not zero
   double time(int i) const { return time_[i]; }              ///< damping time of strain i [s]
   double spring(int i) const { return stiffness_[i] / l_; }  ///< stiffness of strain i divided by l
-  /// Section forces (N, M) for the strains ε (6), without damping [N], [N m].
-  template <class T = double>  // compiled only if used
-  Vec<T, 6> forces(Vec<T, 6> const& strains) const {
-    Vec<T, 6> n;
-    for (int i = 0; i < 6; ++i) n[i] = strains[i] * stiffness_[i];
-    n[0] += pretension_;
-    return n;
-  }
-  /// Strain energy per length for the strains ε (6) [J/m].
-  template <class T = double>  // compiled only if used
-  T energy(Vec<T, 6> const& strains) const {
-    T sum = 0.0;
-    for (int i = 0; i < 6; ++i) sum += strains[i] * stiffness_[i] * strains[i];
-    return 0.5 * sum + pretension_ * strains[0];
-  }
-  double pretension() const { return pretension_; }  ///< axial force in the reference configuration [N]
-
- private:
-  double l_, pretension_;
-  Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;       ///< damping times [s]
-  bool damped_ = false;
+  double pretension() const { return pretension_; }          ///< axial force in the reference configuration [N]
+  /// Sum of the stiffness with the factor `ck` and of the damping with the factor `cd`, divided by l.
+  Mat<double, 6, 6> slope(double ck, double cd) const { return matrix_sum(ck / l_, cd / l_); }
 };
 
 /// Velocities of the nodes of an element.
@@ -107,6 +72,15 @@ struct HelicoidalElement {
   void set_forces(HelicoidalSection const& section, ScrewVector<double> const& free, NodeVelocities<T> const& v) {
     ScrewVector<T> const rates =
         section.damped() ? rate(v) : ScrewVector<T>{detail::zeros<Vec<T, 3>>(), detail::zeros<Vec<T, 3>>()};
+    if (section.coupled()) {
+      ScrewVector<T> strains = scaled(d, 1.0 / section.length());
+      for (int i = 0; i < 3; ++i) {
+        strains.translation[i] -= free.translation[i] / section.length();
+        strains.rotation[i] -= free.rotation[i] / section.length();
+      }
+      section.stress(strains, scaled(rates, 1.0 / section.length()), n, m);
+      return;
+    }
     for (int i = 0; i < 3; ++i) {
       n[i] = d.translation[i] - free.translation[i];
       m[i] = d.rotation[i] - free.rotation[i];
@@ -134,50 +108,66 @@ struct HelicoidalElement {
     }
   }
 
-  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The columns of B are R₁ᵀ(δr₂ − δr₁), δθ₁, δθ₂; δd = B δ.
-  /// With D(d, y) = ∂(T⁻¹(d) y)/∂d (`se3_tangent_inverse_derivative`), the tangent is the sum of
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The columns of B are δr₂ − δr₁, δθ₁, δθ₂; δd = B δ. With
+  /// D(d, y) = ∂(T⁻¹(d) y)/∂d (`se3_tangent_inverse_derivative`), the tangent is the sum of
   ///   Bᵀ ∂n,  δn = C/l ((ck + cd τ) δd + ck τ δḋ),
   /// and of the terms of the change of B:
   ///   −δf_r₂ = R₁ (δθ₁ × X N + D₀(φ, N) δφ),
   ///   −δf_θ₁ = −(D₀(φ, N) δp + D₁ δφ),  −δf_θ₂ = −(D₀(−φ, N) δp + D₁(−d) δφ),
-  /// where [D₀, D₁; 0, D₀] is D(d, y) of the screw y = (M, N).
+  /// where [D₀, D₁; 0, D₀] is D(d, y) of the screw y = (M, N). Because T⁻¹(d) y − T⁻¹(−d) y = [d, y], the operators at
+  /// −d are D(−d, y) = −D(d, y) − [y, ·].
   void tangent(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
-    Mat<T, 6, 9> const b = nodal_map();
-    Mat<T, 6, 9> const stress = stress_slope(section, b, v, ck, cd);
-    ScrewMap<T> const forward = screw_map_derivative<T>(series, d, {m, n}),
-                      backward = screw_map_derivative<T>(series, opposite(d), {m, n});
-    Vec<T, 3> const pull = product(inverse.diagonal, n);
-    Mat<T, 3, 3> const carried = skew<T>(pull);
-    Mat<T, 9, 9> local;
-    for (int c = 0; c < 9; ++c)
-      for (int r = 0; r < 3; ++r) {
-        T of_r = T(0.0), of_1 = T(0.0), of_2 = T(0.0), geometric_r = T(0.0), geometric_1 = T(0.0), geometric_2 = T(0.0);
-        for (int i = 0; i < 6; ++i) {
-          of_r += b(i, r) * stress(i, c);
-          of_1 += b(i, 3 + r) * stress(i, c);
-          of_2 += b(i, 6 + r) * stress(i, c);
-        }
-        for (int i = 0; i < 3; ++i) {
-          geometric_r += forward.diagonal(r, i) * b(3 + i, c);
-          geometric_1 += forward.diagonal(r, i) * b(i, c) + forward.coupling(r, i) * b(3 + i, c);
-          geometric_2 += backward.diagonal(r, i) * b(i, c) + backward.coupling(r, i) * b(3 + i, c);
-        }
-        if (c >= 3 && c < 6) geometric_r -= carried(r, c - 3);
-        local(r, c) = of_r + ck * geometric_r;
-        local(3 + r, c) = of_1 - ck * geometric_1;
-        local(6 + r, c) = of_2 - ck * geometric_2;
+    Mat<T, 3, 3> const pull = product(R, inverse.diagonal);  // R₁ X
+    Mat<T, 6, 9> const b = nodal_map(pull);
+    Mat<T, 9, 6> left;  // Bᵀ ∂n/∂d, and the change of B
+    bool const damped = section.damped() && ck != 0.0, coupled = section.coupled();
+    Mat<T, 3, 3> swept, bent;  // part of ∂N/∂θ₁ at constant d, and of ∂M/∂θ₁ of a coupled section
+    if (coupled) {
+      set_coupled(section, v, ck, cd, b, left, swept, bent);
+    } else {
+      for (int i = 0; i < 6; ++i) {
+        T const full(section.spring(i) * (ck + cd * section.time(i)));
+        for (int r = 0; r < 9; ++r) left(r, i) = b(i, r) * full;
       }
-    expand(local, k);
+      if (damped) add_damping(section, v, ck, b, left, swept);
+    }
+    add_geometric(ck, left);
+    Mat<T, 3, 3> const carried = skew_product<T>(product(pull, n), R);
+    for (int c = 0; c < 9; ++c) {
+      Vec<T, 9> column;
+      for (int r = 0; r < 9; ++r) {
+        column[r] = left(r, 0) * b(0, c) + left(r, 1) * b(1, c) + left(r, 2) * b(2, c);
+        if (c >= 3) column[r] += left(r, 3) * b(3, c) + left(r, 4) * b(4, c) + left(r, 5) * b(5, c);
+      }
+      if (c >= 3 && c < 6) {
+        if (damped)
+          for (int r = 0; r < 9; ++r)
+            column[r] += b(0, r) * swept(0, c - 3) + b(1, r) * swept(1, c - 3) + b(2, r) * swept(2, c - 3);
+        if (damped && coupled)
+          for (int r = 3; r < 9; ++r)
+            column[r] += b(3, r) * bent(0, c - 3) + b(4, r) * bent(1, c - 3) + b(5, r) * bent(2, c - 3);
+        for (int r = 0; r < 3; ++r) column[r] -= ck * carried(r, c - 3);
+      }
+      int const to = c < 6 ? c : c + 3;
+      for (int r = 0; r < 3; ++r) {
+        k(r, to) = c < 3 ? column[r] : -column[r];
+        k(6 + r, to) = c < 3 ? -column[r] : column[r];
+        k(3 + r, to) = c < 3 ? -column[3 + r] : column[3 + r];
+        k(9 + r, to) = c < 3 ? -column[6 + r] : column[6 + r];
+      }
+    }
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 12; ++r) k(r, 6 + c) = -k(r, c);
   }
 
  private:
-  /// B (6×9) of δd = B (R₁ᵀ(δr₂ − δr₁), δθ₁, δθ₂).
-  Mat<T, 6, 9> nodal_map() const {
+  /// B (6×9) of δd = B (δr₂ − δr₁, δθ₁, δθ₂), with `pull` = R₁ X.
+  Mat<T, 6, 9> nodal_map(Mat<T, 3, 3> const& pull) const {
     Mat<T, 6, 9> b;
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
-        b(i, j) = inverse.diagonal(j, i);
+        b(i, j) = pull(j, i);
         b(i, 3 + j) = -inverse.coupling(j, i);
         b(i, 6 + j) = inverse.coupling(i, j);
         b(3 + i, j) = T(0.0);
@@ -186,51 +176,77 @@ struct HelicoidalElement {
       }
     return b;
   }
-  /// Derivative of the section forces (6×9) with respect to the columns of B. With u = R₁ᵀ(ṙ₂ − ṙ₁):
-  ///   δḋ = Xᵀ (u × δθ₁) + (−D₀(−φ, u) δφ, 0) + (D(d, Ω₂) + D(−d, Ω₁)) δd.
-  Mat<T, 6, 9> stress_slope(HelicoidalSection const& section, Mat<T, 6, 9> const& b, NodeVelocities<T> const& v,
-                            double ck, double cd) const {
-    Mat<T, 6, 9> out;
-    for (int c = 0; c < 9; ++c)
-      for (int i = 0; i < 6; ++i) out(i, c) = b(i, c) * (section.spring(i) * (ck + cd * section.time(i)));
-    if (!section.damped() || ck == 0.0) return out;
-    Vec<T, 3> const none = detail::zeros<Vec<T, 3>>();
-    ScrewMap<T> of_d = sum<T>(screw_map_derivative<T>(series, d, {none, v.w2}),
-                              screw_map_derivative<T>(series, opposite(d), {none, v.w1}));
-    Mat<T, 3, 3> const by_apart = map_derivative<T>(series, scaled<T>(d.rotation, -1.0), v.apart),
-                       swept = transposed_product<T>(inverse.diagonal, skew<T>(v.apart));
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) of_d.coupling(i, j) -= by_apart(i, j);
-    for (int c = 0; c < 9; ++c)
-      for (int r = 0; r < 3; ++r) {
-        T p = T(0.0), phi = T(0.0);
-        for (int i = 0; i < 3; ++i) {
-          p += of_d.diagonal(r, i) * b(i, c) + of_d.coupling(r, i) * b(3 + i, c);
-          phi += of_d.diagonal(r, i) * b(3 + i, c);
-        }
-        if (c >= 3 && c < 6) p += swept(r, c - 3);
-        out(r, c) += p * (ck * section.spring(r) * section.time(r));
-        out(3 + r, c) += phi * (ck * section.spring(3 + r) * section.time(3 + r));
+  /// Adds the factors of δd in the change of B to `left` (9×6).
+  void add_geometric(double ck, Mat<T, 9, 6>& left) const {
+    ScrewMap<T> const at = screw_map_derivative<T>(series, d, {m, n});
+    Mat<T, 3, 3> const turned = product(R, at.diagonal), of_n = skew<T>(n), of_m = skew<T>(m);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        left(i, 3 + j) += ck * turned(i, j);
+        left(3 + i, j) -= ck * at.diagonal(i, j);
+        left(3 + i, 3 + j) -= ck * at.coupling(i, j);
+        left(6 + i, j) += ck * (at.diagonal(i, j) + of_n(i, j));
+        left(6 + i, 3 + j) += ck * (at.coupling(i, j) + of_m(i, j));
       }
-    return out;
   }
-  /// Writes the tangent in the columns (δr₁, δθ₁, δr₂, δθ₂) to k, from that in the columns of B.
-  void expand(Mat<T, 9, 9> const& local, Mat<T, 12, 12>& k) const {
-    Mat<T, 3, 3> const back = transposed(R);
-    Mat<T, 3, 3> block[3][3];
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) block[a][b](i, j) = local(3 * a + i, 3 * b + j);
-        if (a == 0) block[a][b] = product(R, block[a][b]);
-        if (b == 0) block[a][b] = product(block[a][b], back);
+  /// Adds Bᵀ ck C/l τ ∂ḋ/∂d to `left`, and sets `swept` to ck C_Γ/l τ Xᵀ ũ. With u = R₁ᵀ(ṙ₂ − ṙ₁):
+  ///   δḋ = (Xᵀ (u × δθ₁), 0) + (D(d, (u, Ω₂ − Ω₁)) − [(−u, Ω₁), ·]) δd.
+  void add_damping(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, Mat<T, 6, 9> const& b,
+                   Mat<T, 9, 6>& left, Mat<T, 3, 3>& swept) const {
+    ScrewMap<T> const at = screw_map_derivative<T>(series, d, {v.apart, difference<T>(v.w2, v.w1)});
+    Mat<T, 3, 3> const of_u = skew<T>(v.apart), of_w = skew<T>(v.w1);
+    Mat<T, 3, 3> of_p, of_phi, coupling;
+    swept = transposed_product<T>(inverse.diagonal, of_u);
+    for (int i = 0; i < 3; ++i) {
+      double const pull = ck * section.spring(i) * section.time(i),
+                   bend = ck * section.spring(3 + i) * section.time(3 + i);
+      for (int j = 0; j < 3; ++j) {
+        T const same = at.diagonal(i, j) - of_w(i, j);
+        of_p(i, j) = pull * same;
+        of_phi(i, j) = bend * same;
+        coupling(i, j) = pull * (at.coupling(i, j) + of_u(i, j));
+        swept(i, j) *= pull;
       }
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) {
-        double const sign = (a == 0 ? -1.0 : 1.0) * (b == 0 ? -1.0 : 1.0);
-        Mat<T, 3, 3> const& from = block[a == 1 ? 1 : a == 3 ? 2 : 0][b == 1 ? 1 : b == 3 ? 2 : 0];
-        for (int j = 0; j < 3; ++j)
-          for (int i = 0; i < 3; ++i) k(3 * a + i, 3 * b + j) = sign * from(i, j);
+    }
+    for (int j = 0; j < 3; ++j)
+      for (int r = 0; r < 9; ++r) {
+        left(r, j) += b(0, r) * of_p(0, j) + b(1, r) * of_p(1, j) + b(2, r) * of_p(2, j);
+        T sum = b(0, r) * coupling(0, j) + b(1, r) * coupling(1, j) + b(2, r) * coupling(2, j);
+        if (r >= 3) sum += b(3, r) * of_phi(0, j) + b(4, r) * of_phi(1, j) + b(5, r) * of_phi(2, j);
+        left(r, 3 + j) += sum;
+      }
+  }
+  /// Sets `left` to Bᵀ (S + ck D ∂ḋ/∂d) with S = ck C + cd D, and `swept`, `bent` to the rows N and M of ck D (Xᵀ ũ,
+  /// 0), for matrices C and D divided by l.
+  void set_coupled(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, double cd,
+                   Mat<T, 6, 9> const& b, Mat<T, 9, 6>& left, Mat<T, 3, 3>& swept, Mat<T, 3, 3>& bent) const {
+    Mat<T, 6, 6> slope = section.slope(ck, cd);
+    if (section.damped()) {
+      Mat<double, 6, 6> const damper = section.slope(0.0, ck);
+      ScrewMap<T> const at = screw_map_derivative<T>(series, d, {v.apart, difference<T>(v.w2, v.w1)});
+      Mat<T, 3, 3> const of_u = skew<T>(v.apart), of_w = skew<T>(v.w1),
+                         turned = transposed_product<T>(inverse.diagonal, of_u);
+      Mat<T, 6, 6> rate = detail::zeros<Mat<T, 6, 6>>();
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          rate(i, j) = rate(3 + i, 3 + j) = at.diagonal(i, j) - of_w(i, j);
+          rate(i, 3 + j) = at.coupling(i, j) + of_u(i, j);
+        }
+      Mat<T, 6, 6> const more = detail::small_product(damper, rate);
+      for (int i = 0; i < 36; ++i) slope.data()[i] += more.data()[i];
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+          swept(i, j) = bent(i, j) = T(0.0);
+          for (int k = 0; k < 3; ++k) {
+            swept(i, j) += damper(i, k) * turned(k, j);
+            bent(i, j) += damper(3 + i, k) * turned(k, j);
+          }
+        }
+    }
+    for (int i = 0; i < 6; ++i)
+      for (int r = 0; r < 9; ++r) {
+        left(r, i) = T(0.0);
+        for (int k = 0; k < 6; ++k) left(r, i) += b(k, r) * slope(k, i);
       }
   }
 };

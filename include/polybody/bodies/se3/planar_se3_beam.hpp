@@ -4,9 +4,8 @@
 /// on SE(2).
 /// Theory: Eqs. 2.119, 2.120.
 
-#include <string_view>
-
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/shared/sections.hpp>
 #include <polybody/math/se3.hpp>
 
 namespace polybody::planar {
@@ -37,29 +36,23 @@ struct CircularArc : SimoVuQuoc {
     }
   };
 
+  /// Derivatives r′ and r″ of the axis in the middle of an element of length l [m]. `chord` (2) [m] and `phi` [rad] are
+  /// the differences of position and angle of its nodes.
+  template <class T = double>  // compiled only if used
+  static AxisSlopes<2> axis_slopes(Vec<T, 2> const& chord, T phi, double l) {
+    double const stretch = Growth<T>(phi).g / l, bend = stretch * phi / l;
+    return {stretch * chord, bend * Vec<T, 2>(-chord[1], chord[0])};
+  }
+
   /// Strains ε, γ, κ, with p = (x′, y′, θ, θ′, φ) in the middle of the element.
-  struct Section {
-    static constexpr int points = 1;
-    static constexpr int components = 1;
+  struct Section : SimoVuQuoc::Section {
     static constexpr int parameters = 5;
-    static constexpr int strains = 3;
 
-    static Vec3 stiffness(BarConstants const& c) { return {c.EA, c.GA, c.EI}; }
-    static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
-
-    static constexpr int reach = 2;
-    /// Index of the coordinate of node j that shape k reads.
-    static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
     /// Parameters in the middle of the element, because the strains are those of the whole element.
     template <class T = double>  // compiled only if used
     static Mat<T, 5, 2> map(double, double l) {
-      ShapeValues<2> const n = linear_shape(0.5, l);
       Mat<T, 5, 2> p;
-      for (int j = 0; j < 2; ++j) {
-        p(0, j) = p(1, j) = p(3, j) = n.ds[std::size_t(j)];
-        p(2, j) = n.s[std::size_t(j)];
-        p(4, j) = j == 0 ? -1.0 : 1.0;
-      }
+      p << SimoVuQuoc::Section::map<T>(0.5, l), T(-1), T(1);
       return p;
     }
     template <KernelScalar T>
@@ -106,8 +99,6 @@ class Se3Beam : public Beam<CircularArc> {
   using Base = Beam<CircularArc>;
 
  public:
-  static constexpr std::string_view family = "SE(3) beam in the plane";  ///< family in reports (`formulation_family`)
-
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], a placement that leaves the plane, or a bar without GA.
   static Se3Beam from(Bar const& bar, Index n) { return Se3Beam(Base::from(bar, n)); }

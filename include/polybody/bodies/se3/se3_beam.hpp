@@ -3,11 +3,10 @@
 /// Geometrically exact beam in space with one interpolation of position and rotation on SE(3).
 /// Theory: Eqs. 2.106 to 2.108, 2.117, 2.118.
 
-#include <string_view>
-
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
-#include <polybody/bodies/se3/frame_chain.hpp>
 #include <polybody/bodies/se3/helicoidal_section.hpp>
+#include <polybody/bodies/shared/frame_chain.hpp>
+#include <polybody/bodies/shared/sections.hpp>
 
 namespace polybody {
 
@@ -25,22 +24,15 @@ namespace polybody {
 /// element must be less than π.
 class Se3Beam : public FrameChain {
  public:
-  static constexpr Index default_elements = 32;             ///< number of elements of `from(bar)` (`BarMesh`)
-  static constexpr std::string_view family = "SE(3) beam";  ///< family in reports (`formulation_family`)
-
-  /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
-  struct Point {
-    Index element = 0;        ///< index of the element, counted from the first end of the bar
-    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
-    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the section [m]
-  };
+  static constexpr bool objective = true;
 
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], and unless GA, GA_z, GJ and EI_y of the bar are positive.
   template <class T = double>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n) {
     require_elements(n, "Se3Beam");
-    return Se3Beam(bar, polybody::constants(bar), n, [](T s) { return Placement{.origin = Vec<T, 3>(s, 0, 0)}; });
+    return Se3Beam(bar, detail::chain_sections(bar, n, "Se3Beam"), n,
+                   [](T s) { return Placement{.origin = Vec<T, 3>(s, 0, 0)}; });
   }
   /// Beam from the straight bar, with the number of elements of `mesh`.
   template <class T = double>  // compiled only if used
@@ -54,26 +46,16 @@ class Se3Beam : public FrameChain {
   template <class T = double>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Se3Beam");
-    if (!curve)
-      throw InvalidInput("reference_curve.missing", {ErrorObject{"Se3Beam"},
-                                                     ": the reference curve is an empty function. Pass a function that "
-                                                     "returns a Placement for each arc length s."});
-    return Se3Beam(bar, polybody::constants(bar), n, curve);
+    require_curve(curve, "Se3Beam");
+    return Se3Beam(bar, detail::chain_sections(bar, n, "Se3Beam"), n, curve);
   }
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
   /// \throws InvalidInput for s outside the bar.
   template <class T = double>  // compiled only if used
   Point at(T s, double y = 0.0, double z = 0.0) const {
-    double const x = require_inside(s, length(), "Se3Beam") / element_length();
-    require_finite(y, "Se3Beam: y of a point");
-    require_finite(z, "Se3Beam: z of a point");
-    Index const e = std::min(Index(x + 1e-12), elements() - 1);
-    double const xi = x - double(e);
-    return {e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
+    return point_at<T>(s, y, z, "Se3Beam");
   }
-  using FrameChain::first_column;
-  Index first_column(Point const& p) const { return first_column(p.element); }
 
   /// Elastic and damping force (helicoidal_element.hpp), and −Ω × J Ω at the nodes.
   template <StateScalar T>
@@ -90,23 +72,23 @@ class Se3Beam : public FrameChain {
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     HelicoidalElement<T> const element = stressed<T>(e, q, v);
-    element.tangent(section_, element.velocities(v, 6 * e), ck, cd, k);
+    element.tangent(section_of(e), element.velocities(v, 6 * e), ck, cd, k);
     add_gyroscopic_tangent<T>(e, v, cd, k);
   }
   template <class T = double>  // compiled only if used
   T strain_energy(Index e, std::span<T const> q) const {
-    return element_length() * section_.energy<T>(strains<T>(e, q));
+    return element_length() * section_of(e).energy<T>(strains<T>(e, q));
   }
 
   /// Strains (Γ, K) of the element of `p`, in the axes of its sections [1], [1/m] (`HasSections`).
   template <class T = double>  // compiled only if used
   Vec6 section_strains(Point const& p, std::span<T const> q) const {
-    return strains<T>(p.element, q);
+    return section_of(p.element).template axis_strains<T>(strains<T>(p.element, q));
   }
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   template <class T = double>  // compiled only if used
   Vec6 section_forces(Point const& p, std::span<T const> q) const {
-    return section_.forces<T>(strains<T>(p.element, q));
+    return section_of(p.element).template forces<T>(strains<T>(p.element, q));
   }
   /// Rotation field at `p`, of constant curvature in an element. Its curvature includes that of the reference.
   template <class T = double>  // compiled only if used
@@ -115,6 +97,16 @@ class Se3Beam : public FrameChain {
     Mat<T, 3, 3> const relative = exp_so3<T>(scaled<T>(element.d.rotation, p.xi));
     return {product(element.R, relative), scaled<T>(element.d.rotation, 1.0 / element_length()),
             detail::zeros<Vec<T, 3>>()};
+  }
+
+  /// Derivatives r′ = R p/l and r″ = R (φ × p)/l² of the axis at `p`, with d = (p, φ).
+  template <class T = double>  // compiled only if used
+  AxisSlopes<3> axis_slopes(Point const& p, std::span<T const> q) const {
+    HelicoidalElement<T> const element(q, 7 * p.element);
+    double const by_length = 1.0 / element_length();
+    Mat<T, 3, 3> const axes = product(element.R, exp_so3<T>(scaled<T>(element.d.rotation, p.xi)));
+    Vec<T, 3> const first = scaled<T>(product(axes, element.d.translation), by_length);
+    return {first, scaled<T>(cross<T>(product(axes, element.d.rotation), first), by_length)};
   }
 
   /// Marker kinematics: with the twist (U, Ω) of the section and ρ = R (0, y, z),
@@ -127,10 +119,11 @@ class Se3Beam : public FrameChain {
     auto const nodes = s.twists(v, 6 * p.element);
     ScrewVector<T> const twist = s.twist(nodes), rate = s.twist_rate(nodes);
     Vec<T, 3> const w = product(s.R, twist.rotation), carried = cross(twist.rotation, twist.translation);
+    Vec3 const off = from_centre(p);
     Vec<T, 3> slide, arm;
     for (int i = 0; i < 3; ++i) {
       slide[i] = rate.translation[i] + carried[i];
-      arm[i] = s.R(i, 1) * p.y + s.R(i, 2) * p.z;
+      arm[i] = s.R(i, 1) * off[1] + s.R(i, 2) * off[2];
     }
     Vec<T, 3> const v_axis = product(s.R, twist.translation), swept = cross(w, arm), a_axis = product(s.R, slide),
                     turning = product(s.R, rate.rotation), tangential = cross(turning, arm),
@@ -157,7 +150,7 @@ class Se3Beam : public FrameChain {
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
     HelicoidalPoint<T> const s(p.xi, q, 7 * p.element);
-    Vec<T, 3> const off(0.0, p.y, p.z), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
+    Vec<T, 3> const off = from_centre(p), f = transposed_product<T>(s.R, w.f), m = transposed_product<T>(s.R, w.m);
     Vec<T, 3> moment = cross(off, f);
     Mat<T, 3, 3> of_moment = skew_of_skew(off, f);
     Mat<T, 3, 3> const of_f = skew(f), of_m = skew(m);
@@ -192,14 +185,19 @@ class Se3Beam : public FrameChain {
 
  private:
   template <class Curve>  // compiled only if used
-  Se3Beam(Bar const& bar, BarConstants const& c, Index n, Curve const& curve)
-      : FrameChain(bar, c, n, curve), section_(bar, c, element_length()), free_(std::size_t(n)) {
-    for (Index e = 0; e < n; ++e) set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length())).axes);
+  Se3Beam(Bar const& bar, detail::ChainSections const& sections, Index n, Curve const& curve)
+      : FrameChain(bar, sections, n, curve, "Se3Beam"), free_(std::size_t(n)) {
+    for (auto const& section : sections.elements) sections_.emplace_back(section, element_length(), bar.pretension);
+    for (Index e = 0; e < n; ++e)
+      set_free<double>(e, placed(bar, curve((double(e) + 0.5) * element_length()), "Se3Beam").axes);
+    if (move_to_centres(sections.nodes))
+      for (Index e = 0; e < n; ++e) free_[std::size_t(e)] = HelicoidalElement<double>(reference_, 7 * e).d;
   }
+  HelicoidalSection const& section_of(Index e) const { return sections_[sections_.size() == 1 ? 0 : std::size_t(e)]; }
   /// Sets d₀ of element e; `middle` are the axes of the section of the curve in the middle of the element.
   template <class T>  // compiled only if used
   void set_free(Index e, Mat<T, 3, 3> const& middle) {
-    HelicoidalElement<T> const element(FrameChain::reference(), 7 * e);
+    HelicoidalElement<T> const element(reference_, 7 * e);
     ScrewVector<T> const& d = free_[std::size_t(e)] = element.d;
     double const l = element_length(), size = std::sqrt(squared_norm(d.translation));
     if (!(size > 1e-6 * l && size < (1.0 + 1e-6) * l))
@@ -224,7 +222,7 @@ class Se3Beam : public FrameChain {
   template <StateScalar T>
   HelicoidalElement<T> stressed(Index e, std::span<T const> q, std::span<T const> v) const {
     HelicoidalElement<T> element(q, 7 * e);
-    element.set_forces(section_, free_[std::size_t(e)], element.velocities(v, 6 * e));
+    element.set_forces(section_of(e), free_[std::size_t(e)], element.velocities(v, 6 * e));
     return element;
   }
   template <class T>
@@ -257,8 +255,8 @@ class Se3Beam : public FrameChain {
     }
   }
 
-  HelicoidalSection section_;
-  std::vector<ScrewVector<double>> free_;  ///< d₀ of each element
+  std::vector<HelicoidalSection> sections_;  ///< of all elements, or of each
+  std::vector<ScrewVector<double>> free_;    ///< d₀ of each element
 };
 
 }  // namespace polybody

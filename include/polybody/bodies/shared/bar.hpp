@@ -8,7 +8,7 @@
 #include <optional>
 #include <variant>
 
-#include <polybody/kinematics/frame.hpp>
+#include <polybody/bodies/shared/section6.hpp>
 
 namespace polybody {
 
@@ -60,12 +60,13 @@ struct Damping {
 };
 
 /// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. The
-/// data of the bar are either `section` and `material`, or `constants`.
+/// data of the bar are a shape as `section` with its `material`, or matrices as `section` (`Section6`), or `constants`.
 struct Bar {
   Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
-  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar has `constants`
-  std::optional<Material> material = {};                         ///< material of the section
-  std::optional<BarConstants> constants = {};                    ///< constants that replace section and material
+  /// shape, or a `Section6` or function of the arc length that returns one; empty if the bar has `constants`
+  std::variant<std::monostate, Circle, Rectangle, SectionAlong> section = {};
+  std::optional<Material> material = {};       ///< material of the section
+  std::optional<BarConstants> constants = {};  ///< constants that replace section and material
   Placement placement = {};  ///< placement of the first end; the bar lies along the x axis of the placement
   Damping damping = {};      ///< damping of the material
   double pretension = 0.0;   ///< axial force in the reference configuration [N]
@@ -176,6 +177,39 @@ template <class = void>  // compiled only if used
   require_sizes(c, of);
 }
 
+/// Constants of a section that is given by matrices.
+/// \throws InvalidInput for matrices that vary along the bar, with couplings, offsets or damping times, and as
+/// `centred`.
+template <class = void>  // compiled only if used
+[[gnu::cold]] BarConstants uncoupled_constants(SectionAlong const& along) {
+  auto const refuse = [](char const* fault) {
+    throw InvalidInput("section.coupled", {ErrorObject{"Bar"}, ": the section given by matrices ", fault,
+                                           ". This body needs a constant section without couplings. Use Se3Beam or "
+                                           "Lrvf, which accept every Section6, or give constants."});
+  };
+  Section6 const* const section = along.target<Section6>();
+  if (!section) refuse("is a function of the arc length");
+  CentredSection const c = centred(*section, Vec6::Zero(), 0.0);
+  for (int i = 0; i < 6; ++i) {
+    if (section->damping_times[i] != 0.0) refuse("has damping times of its own");
+    for (int j = 0; j < 6; ++j) {
+      if (i != j && section->stiffness(i, j) != 0.0) refuse("couples strains");
+      if (i != j && section->mass(i, j) != 0.0) refuse("has an offset or products of inertia");
+    }
+  }
+  Mat<double, 6, 6> const& k = section->stiffness;
+  return {.EA = k(0, 0),
+          .EI = k(5, 5),
+          .mass_per_length = c.mass,
+          .GA = k(1, 1),
+          .GJ = k(3, 3),
+          .rotary_inertia = c.inertia(2, 2),
+          .EI_y = k(4, 4),
+          .GA_z = k(2, 2),
+          .rotary_inertia_y = c.inertia(1, 1),
+          .polar_inertia = c.inertia(0, 0)};
+}
+
 /// Checks a damping time [s].
 /// \throws InvalidInput naming `what` unless 0 ≤ `time` ≤ `largest_number`.
 template <class = void>  // compiled only if used
@@ -188,10 +222,12 @@ void require_damping_time(double time, std::string const& what) {
 
 }  // namespace detail
 
-/// Stiffness and inertia of the section of a bar.
+namespace detail {
+
+/// Checks all data of a bar except for its section.
 /// \throws InvalidInput naming the quantity that is not valid.
 template <class = void>  // compiled only if used
-[[gnu::cold]] BarConstants constants(Bar const& bar) {
+[[gnu::cold]] void check_bar(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
   if (!(bar.length >= 1e-100 && bar.length <= 1e100))
     throw InvalidInput("bar.length", {ErrorObject{"Bar"}, ": the length must lie in [1e-100, 1e+100] m, but is ",
@@ -204,21 +240,34 @@ template <class = void>  // compiled only if used
   if (std::abs(bar.pretension) > largest_number)
     throw InvalidInput("value.magnitude", {ErrorObject{"Bar"}, ": the pretension is ", ErrorValue{bar.pretension},
                                            " N, beyond ", largest_number, " N, the largest allowed magnitude."});
-  bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
-  if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
+  bool const by_matrices = std::holds_alternative<SectionAlong>(bar.section);
+  bool const by_section = !by_matrices && !std::holds_alternative<std::monostate>(bar.section);
+  if (by_section != bar.material.has_value() || (by_section || by_matrices) == bar.constants.has_value())
     throw InvalidInput(
         "bar.section_or_constants",
         {ErrorObject{"Bar"},
-         ": give either a section with a material, or constants; not both, and not a section without a material."});
+         ": give either a shape with a material, or matrices (Section6), or constants; not two of these, and not a "
+         "shape without a material."});
   if (bar.shear_factor && !by_section)
     throw InvalidInput("bar.shear_factor",
                        {ErrorObject{"Bar"},
-                        ": a shear factor needs a section. The constants already contain the shear stiffness GA."});
-  if (by_section) {
+                        ": a shear factor needs a shape. Constants and matrices already contain the shear stiffness."});
+}
+
+}  // namespace detail
+
+/// Stiffness and inertia of the section of a bar.
+/// \throws InvalidInput naming the quantity that is not valid, and for matrices that vary along the bar or have
+/// couplings or offsets.
+template <class = void>  // compiled only if used
+[[gnu::cold]] BarConstants constants(Bar const& bar) {
+  detail::check_bar(bar);
+  if (bar.material) {
     BarConstants const c = detail::constants_of_section(bar);
     detail::require_section_sizes(bar, c);
     return c;
   }
+  if (!bar.constants) return detail::uncoupled_constants(std::get<SectionAlong>(bar.section));
   BarConstants const& c = *bar.constants;
   require_positive(c.EA, "Bar: EA");
   require_positive(c.EI, "Bar: EI");
@@ -255,6 +304,15 @@ inline void require_elements(Index n, std::string_view what) {
   if (n > 10'000'000)
     throw InvalidInput("body.elements", {ErrorObject{what}, ": ", ErrorValue{n},
                                          " elements do not fit into the memory. Use at most 10000000."});
+}
+
+/// Checks the reference curve of a body.
+/// \throws InvalidInput naming `what` for an empty function.
+inline void require_curve(ReferenceCurve const& curve, std::string_view what) {
+  if (!curve)
+    throw InvalidInput("reference_curve.missing", {ErrorObject{what},
+                                                   ": the reference curve is an empty function. Pass a function that "
+                                                   "returns a Placement for each arc length s."});
 }
 
 /// Returns s limited to the bar, 0 ≤ s ≤ length.

@@ -13,9 +13,11 @@ namespace polybody {
 
 /// Names of the families.
 namespace families {
-inline constexpr std::string_view rigid = "rigid body";             ///< `Rigid`, `planar::Rigid`
-inline constexpr std::string_view lrvf = "LRVF in the plane";       ///< `planar::Lrvf` with any quadrature
-inline constexpr std::string_view lrvf_in_space = "LRVF in space";  ///< `Lrvf`
+inline constexpr std::string_view rigid = "rigid body";                       ///< `Rigid`, `planar::Rigid`
+inline constexpr std::string_view lrvf = "LRVF in the plane";                 ///< `planar::Lrvf` with any quadrature
+inline constexpr std::string_view lrvf_in_space = "LRVF in space";            ///< `Lrvf`
+inline constexpr std::string_view se3_beam = "SE(3) beam in the plane";       ///< `planar::Se3Beam`
+inline constexpr std::string_view se3_beam_in_space = "SE(3) beam in space";  ///< `Se3Beam`
 inline constexpr std::string_view cable_green =
     "ANCF cable, Green strain";  ///< `AncfCable<GreenStrain>`, in space and in the plane
 inline constexpr std::string_view cable_engineering =
@@ -32,6 +34,7 @@ template <class Rotation>
 class Rigid;
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class Lrvf;
+class Se3Beam;
 template <class Strain, int axial_points, int bending_points>
 class AncfCable;
 template <class Elastic>
@@ -53,6 +56,7 @@ class Beam;
 template <class Strain, int axial_points, int bending_points>
 struct HermiteCable;
 struct SimoVuQuoc;
+class Se3Beam;
 }  // namespace planar
 
 namespace detail {
@@ -84,6 +88,12 @@ inline constexpr std::string_view formulation_family<Rigid<Rotation>> = families
 /// Family of LRVF beams in space.
 template <class Interpolation, class Quadrature>
 inline constexpr std::string_view formulation_family<Lrvf<Interpolation, Quadrature>> = families::lrvf_in_space;
+/// Family of beams on SE(3) in space.
+template <>
+inline constexpr std::string_view formulation_family<Se3Beam> = families::se3_beam_in_space;
+/// Family of beams on SE(3) in the plane.
+template <>
+inline constexpr std::string_view formulation_family<planar::Se3Beam> = families::se3_beam;
 /// Family of ANCF cables with Green strain.
 template <int axial_points, int bending_points>
 inline constexpr std::string_view formulation_family<AncfCable<GreenStrain, axial_points, bending_points>> =

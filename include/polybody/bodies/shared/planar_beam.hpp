@@ -323,10 +323,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Coordinates of nodes that are placed on a curve at equal arc lengths.
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
-    if (!curve)
-      throw InvalidInput("reference_curve.missing", {ErrorObject{Theory::name},
-                                                     ": the reference curve is an empty function. Pass a function that "
-                                                     "returns a Placement for each arc length s."});
+    require_curve(curve, Theory::name);
     std::vector<double> nodes(std::size_t(this->coordinates()));
     double angle = angle_;  // includes full revolutions
     for (Index i = 0; i <= elements(); ++i) {

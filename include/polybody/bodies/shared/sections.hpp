@@ -25,6 +25,14 @@ concept HasSections = requires(B const b, typename B::Point p, std::span<double 
   { b.section_forces(p, q) } -> std::convertible_to<Vec6>;
 };
 
+/// Derivatives of the position of the axis with respect to the arc length of the reference, in world axes of the plane
+/// (dim = 2) or of space (dim = 3).
+template <int dim>
+struct AxisSlopes {
+  Mat<double, dim, 1> first;   ///< r′ [1]
+  Mat<double, dim, 1> second;  ///< r″ [1/m]
+};
+
 /// Distances (y, z) of the point p from the axis [m]; zero if points of its type have no such distance.
 template <class P>
 Vec2 off_axis(P const& p) {
