@@ -7,7 +7,8 @@ Headers
   - have equations, which are indented in comments, on separate lines;
   - are read without explicit instantiations, which declare nothing, and without Eigen's traits;
   - have the comment of `double a, b;  ///< ...`, or of one line above it, at each of the names;
-  - take the description of a member that a concept requires from docs/extending.md if the member has no comment.
+  - take the description of a member that a concept requires from docs/extending.md if the member has no comment;
+  - have the first equation of a class's item page (docs/items) in the comment of the class.
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
   - are ordered by the links in the pages of docs/site: \\subpage;
@@ -119,6 +120,25 @@ def on_lines_of_their_own(lines):
         after = bool(equation)
 
 
+def with_equations(lines):
+    """The comment of each class with an item page ends with the first equation of this page."""
+    namespaces = []
+    for i, line in enumerate(lines):
+        if inside := re.match(r"namespace (?:polybody)?(?:::)?([\w:]*) ?\{", line):
+            namespaces.append(inside[1])
+        elif line.startswith("}  // namespace"):
+            namespaces.pop()
+        found = re.match(r"(?:class|struct) (\w+)\b(?!.*;)", line)
+        page = found and namespaces and ITEMS.get((namespaces[-1], found[1]))
+        if not page:
+            continue
+        while i > 0 and lines[i - 1].strip() and not lines[i - 1].startswith(("///", "}")):  # template, requires
+            i -= 1
+        if lines[i - 1].startswith("///"):
+            lines[i - 1] += f" <br/>{page[1]} More: \\ref {page[0]}."
+    return lines
+
+
 def header(name, text):
     for pattern in LEFT_OUT:
         text = pattern.sub(lambda m: "\n" * m[0].count("\n"), text)
@@ -133,7 +153,7 @@ def header(name, text):
         for member in WAITING.get(name, {}).get(i + 1, ()):
             say_what_is_asked(lines, i, folder, member)
     group = f"floor_{folder}" if within else "floor_all"
-    text = "\n".join(on_lines_of_their_own(lines))
+    text = "\n".join(with_equations(list(on_lines_of_their_own(lines))))
     text = re.sub(r"^(namespace polybody[\w:]* \{)\n", rf"\1 /** @addtogroup {group}\n@{{ */", text, flags=re.M)
     return re.sub(r"^(\}  // namespace polybody)", r"/** @} */ \1", text, flags=re.M)
 
@@ -190,6 +210,18 @@ for (const e of document.querySelectorAll(".tex")) katex.render(e.textContent, e
 """
 
 
+def items():
+    """Label and first equation of the item page of each class: {(namespace inside polybody, class): …}."""
+    found = {}
+    for path in sorted((ROOT / "docs/items").glob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        inner, _, name = text.split("\n", 1)[0].removeprefix("# ").rpartition("::")
+        if equation := DISPLAY.search(text):
+            tex = " ".join(equation[1].split())
+            found[inner, name] = label(path), formula("div", tex) + DRAW.replace("\n", " ").strip()
+    return found
+
+
 def title(path):
     return path.read_text(encoding="utf-8").split("\n", 1)[0].removeprefix("# ") if path.exists() else path.stem
 
@@ -203,6 +235,8 @@ def link(path, found):
     kind = "\\subpage" if path.parent == SITE and not found[3] and label(target) != "site_index" else "\\ref"
     return f'{kind} {name} "{text}"'
 
+
+ITEMS = items()
 
 if __name__ == "__main__":
     to = Path(sys.argv[1])
