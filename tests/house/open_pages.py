@@ -30,7 +30,7 @@ async function open(url, width) {
   if (!page || !page.querySelector(".title")) faults.push(name + "no title");
   else {
     const formulas = [...page.querySelectorAll(".tex")];
-    const undrawn = formulas.filter(e => !e.querySelector(".katex-html") || e.querySelector('.katex-error, [style*="cc0000"]'));
+    const undrawn = formulas.filter(e => !e.querySelector(".katex-html") || e.querySelector('.katex-error, [mathcolor="#cc0000"]'));
     if (undrawn.length) faults.push(name + undrawn.length + " formulas are not drawn: " + undrawn[0].textContent.slice(0, 60));
     const cut = formulas.filter(e => e.tagName === "DIV" && e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX === "visible");
     if (cut.length) faults.push(name + "a formula is cut: " + cut[0].textContent.slice(0, 60));
