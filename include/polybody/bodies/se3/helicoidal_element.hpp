@@ -122,9 +122,9 @@ struct HelicoidalElement {
     Mat<T, 6, 9> const b = nodal_map(pull);
     Mat<T, 9, 6> left;  // Bᵀ ∂n/∂d, and the change of B
     bool const damped = section.damped() && ck != 0.0, coupled = section.coupled();
-    Mat<T, 3, 3> swept, bent;  // part of ∂N/∂θ₁ at constant d, and of ∂M/∂θ₁ of a coupled section
+    Mat<T, 6, 3> swept;  // part of ∂(N, M)/∂θ₁ at constant d; of ∂N/∂θ₁ only, unless the section is coupled
     if (coupled) {
-      set_coupled(section, v, ck, cd, b, left, swept, bent);
+      left = coupled_factors(section, v, ck, cd, b, swept);
     } else {
       for (int i = 0; i < 6; ++i) {
         T const full(section.spring(i) * (ck + cd * section.time(i)));
@@ -146,7 +146,7 @@ struct HelicoidalElement {
             column[r] += b(0, r) * swept(0, c - 3) + b(1, r) * swept(1, c - 3) + b(2, r) * swept(2, c - 3);
         if (damped && coupled)
           for (int r = 3; r < 9; ++r)
-            column[r] += b(3, r) * bent(0, c - 3) + b(4, r) * bent(1, c - 3) + b(5, r) * bent(2, c - 3);
+            column[r] += b(3, r) * swept(3, c - 3) + b(4, r) * swept(4, c - 3) + b(5, r) * swept(5, c - 3);
         for (int r = 0; r < 3; ++r) column[r] -= ck * carried(r, c - 3);
       }
       int const to = c < 6 ? c : c + 3;
@@ -192,11 +192,11 @@ struct HelicoidalElement {
   /// Adds Bᵀ ck C/l τ ∂ḋ/∂d to `left`, and sets `swept` to ck C_Γ/l τ Xᵀ ũ. With u = R₁ᵀ(ṙ₂ − ṙ₁):
   ///   δḋ = (Xᵀ (u × δθ₁), 0) + (D(d, (u, Ω₂ − Ω₁)) − [(−u, Ω₁), ·]) δd.
   void add_damping(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, Mat<T, 6, 9> const& b,
-                   Mat<T, 9, 6>& left, Mat<T, 3, 3>& swept) const {
+                   Mat<T, 9, 6>& left, Mat<T, 6, 3>& swept) const {
     ScrewMap<T> const at = screw_map_derivative<T>(series, d, {v.apart, difference<T>(v.w2, v.w1)});
     Mat<T, 3, 3> const of_u = skew<T>(v.apart), of_w = skew<T>(v.w1);
     Mat<T, 3, 3> of_p, of_phi, coupling;
-    swept = transposed_product<T>(inverse.diagonal, of_u);
+    Mat<T, 3, 3> const turned = transposed_product<T>(inverse.diagonal, of_u);
     for (int i = 0; i < 3; ++i) {
       double const pull = ck * section.spring(i) * section.time(i),
                    bend = ck * section.spring(3 + i) * section.time(3 + i);
@@ -205,7 +205,7 @@ struct HelicoidalElement {
         of_p(i, j) = pull * same;
         of_phi(i, j) = bend * same;
         coupling(i, j) = pull * (at.coupling(i, j) + of_u(i, j));
-        swept(i, j) *= pull;
+        swept(i, j) = pull * turned(i, j);
       }
     }
     for (int j = 0; j < 3; ++j)
@@ -216,10 +216,9 @@ struct HelicoidalElement {
         left(r, 3 + j) += sum;
       }
   }
-  /// Sets `left` to Bᵀ (S + ck D ∂ḋ/∂d) with S = ck C + cd D, and `swept`, `bent` to the rows N and M of ck D (Xᵀ ũ,
-  /// 0), for matrices C and D divided by l.
-  void set_coupled(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, double cd,
-                   Mat<T, 6, 9> const& b, Mat<T, 9, 6>& left, Mat<T, 3, 3>& swept, Mat<T, 3, 3>& bent) const {
+  /// Bᵀ (S + ck D ∂ḋ/∂d) with S = ck C + cd D, for matrices C and D divided by l. Sets `swept` to ck D (Xᵀ ũ, 0).
+  Mat<T, 9, 6> coupled_factors(HelicoidalSection const& section, NodeVelocities<T> const& v, double ck, double cd,
+                               Mat<T, 6, 9> const& b, Mat<T, 6, 3>& swept) const {
     Mat<T, 6, 6> slope = section.slope(ck, cd);
     if (section.damped()) {
       Mat<double, 6, 6> const damper = section.slope(0.0, ck);
@@ -235,19 +234,18 @@ struct HelicoidalElement {
       Mat<T, 6, 6> const more = detail::small_product(damper, rate);
       for (int i = 0; i < 36; ++i) slope.data()[i] += more.data()[i];
       for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) {
-          swept(i, j) = bent(i, j) = T(0.0);
-          for (int k = 0; k < 3; ++k) {
-            swept(i, j) += damper(i, k) * turned(k, j);
-            bent(i, j) += damper(3 + i, k) * turned(k, j);
-          }
+        for (int i = 0; i < 6; ++i) {
+          swept(i, j) = T(0.0);
+          for (int k = 0; k < 3; ++k) swept(i, j) += damper(i, k) * turned(k, j);
         }
     }
+    Mat<T, 9, 6> left;
     for (int i = 0; i < 6; ++i)
       for (int r = 0; r < 9; ++r) {
         left(r, i) = T(0.0);
         for (int k = 0; k < 6; ++k) left(r, i) += b(k, r) * slope(k, i);
       }
+    return left;
   }
 };
 
