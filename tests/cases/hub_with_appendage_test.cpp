@@ -65,12 +65,14 @@ struct Hub {
 struct Row {
   double t, angle, speed, x, y, slope;
 };
-constexpr Row table[] = {{0.5, 0.22508, 0.6250, 4.86164, -1.0825, -0.3008}, {1.0, 0.85510, 1.953, 4.78765, -1.3363, -0.3738},
-                         {2.0, 3.80915, 3.791, 4.99833, -0.1188, -0.0340},  {3.0, 6.76002, 2.068, 4.85224, 1.1274, 0.3041},
-                         {4.0, 7.56920, 0.252, 4.99558, 0.1899, 0.0570},    {6.0, 7.61974, -0.027, 4.99193, -0.2563, -0.0773}};
+constexpr Row table[] = {
+    {0.5, 0.22508, 0.6250, 4.86164, -1.0825, -0.3008}, {1.0, 0.85510, 1.953, 4.78765, -1.3363, -0.3738},
+    {2.0, 3.80915, 3.791, 4.99833, -0.1188, -0.0340},  {3.0, 6.76002, 2.068, 4.85224, 1.1274, 0.3041},
+    {4.0, 7.56920, 0.252, 4.99558, 0.1899, 0.0570},    {6.0, 7.61974, -0.027, 4.99193, -0.2563, -0.0773}};
 
 template <class B, class Integrator>
-void turns(int pieces, Index elements, Integrator const& method, double momentum_tolerance, std::string const& formulation, double h = 1e-3) {
+void turns(int pieces, Index elements, Integrator const& method, double momentum_tolerance,
+           std::string const& formulation, double h = 1e-3) {
   auto const motion = [&](char const* what) {
     return Claim{"X2", what, By::independent, "inextensible rod, Ritz method in the slope, DOP853", formulation};
   };
@@ -79,10 +81,11 @@ void turns(int pieces, Index elements, Integrator const& method, double momentum
   double const peak = 1000.0 / pi;
   Hub<B> m(pieces, elements);
   std::size_t next = 0;
-  double lowest = 1e9, highest = 0.0, after = 0.0, dev=0;
+  double lowest = 1e9, highest = 0.0, after = 0.0, dev = 0;
   for (auto const& now : simulate(m.model, m.x, method, {.end_time = 6.0, .step = h})) {
-    double const L = now.momentum().angular[2], impulse = now.t < 4.0 ? 0.5 * peak * (1.0 - std::cos(0.5 * pi * now.t)) : 0.0;
-    dev = std::max(dev, std::abs(L-impulse*(pi*h/4)/sin(pi*h/4)));
+    double const L = now.momentum().angular[2],
+                 impulse = now.t < 4.0 ? 0.5 * peak * (1.0 - std::cos(0.5 * pi * now.t)) : 0.0;
+    dev = std::max(dev, std::abs(L - impulse * (pi * h / 4) / sin(pi * h / 4)));
     after = std::max(after, std::abs(L - impulse));
     if (now.t > 4.0 + 1e-9) {
       lowest = std::min(lowest, now.energy().total());
@@ -118,9 +121,12 @@ TEST(HubWithAppendage, CablesFollowTheRod) {
   turns<Cable>(1, 8, GeneralisedAlpha{.rho_inf = 1.0}, 1e-6, "ro1");
 }
 TEST(HubWithAppendage, Em) {
-  turns<Cable>(1, 8, EnergyMomentum{}, 1e-9, "planar AncfCable, engineering strain, 8 elements, EnergyMomentum, h = 1 ms");
-  turns<Cable>(1, 8, EnergyMomentum{}, 1e-9, "planar AncfCable, engineering strain, 8 elements, EnergyMomentum, h = .1 ms", 1e-4);
-  turns<GreenCable>(1, 8, EnergyMomentum{}, 1e-9, "planar AncfCable, Green strain, 8 elements, EnergyMomentum, h = 1 ms");
+  turns<Cable>(1, 8, EnergyMomentum{}, 1e-9,
+               "planar AncfCable, engineering strain, 8 elements, EnergyMomentum, h = 1 ms");
+  turns<Cable>(1, 8, EnergyMomentum{}, 1e-9,
+               "planar AncfCable, engineering strain, 8 elements, EnergyMomentum, h = .1 ms", 1e-4);
+  turns<GreenCable>(1, 8, EnergyMomentum{}, 1e-9,
+                    "planar AncfCable, Green strain, 8 elements, EnergyMomentum, h = 1 ms");
 }
 TEST(HubWithAppendage, Lrvf) {
   turns<planar::Lrvf>(1, 32, method, 1e-6, "planar Lrvf, 32 elements, GeneralisedAlpha, h = 1 ms");

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -56,30 +60,38 @@ struct Row {
   double t, u;
 };
 /// Deflection u_z of the tip by a Legendre–Ritz method with 24 functions, with exact modal response.
-constexpr Row table[] = {{0.01, 5.610e-5},    {0.02, 3.46715e-4},    {0.1, 1.859582e-3}, {0.25, 5.008956e-3},
+constexpr Row table[] = {{0.01, 5.610e-5},   {0.02, 3.46715e-4},   {0.1, 1.859582e-3}, {0.25, 5.008956e-3},
                          {0.5, 9.982518e-3}, {0.75, 1.0017588e-2}, {1.0, 9.982472e-3}};
 
-// The tip vibrates at 22.04 Hz about the ramp with an amplitude of 1.47e-4 m. An error of 2e-6 m at 0.5 s is an error
-// of 2e-4 of this frequency. The arm has an eighth of the compliance.
+double const amplitude = 1.4677e-4;  ///< largest distance of the tip from the ramp up to 0.5 s [m]
+
+// The tip vibrates at 22.04 Hz about the ramp, with an amplitude of 1.47e-4 m up to 0.5 s. An error of 2e-4 of this
+// frequency then causes an error of 2e-6 m. Generalised-α with h = 0.2 ms has an error of 7e-5. An arm of n elements
+// with constant curvature has the relative error 1/4n² of its stiffness, which is an eighth of the compliance. The
+// error of the frequency is then up to 1e-3 with n = 4, and 2.5e-4 with n = 8.
 template <class B>
-void follows(Index of_shaft, Index of_arm, char const* formulation) {
+void follows(Index of_arm, double tolerance, std::string const& formulation) {
   auto const claim = [&](char const* what) {
     return Claim{"X1", what, By::independent, "Legendre–Ritz, 24 functions, exact modal response", formulation};
   };
-  ShaftAndArm<B> m(of_shaft, of_arm);
+  ShaftAndArm<B> m(2, of_arm);
   std::size_t next = 0;
   double rising = 0.0, after = 0.0;
   for (auto const& now : m.run(2e-4)) {
     Frame<double> const tip = now.frame(m.arm.at(1.0));
-    if (now.t < 1e-9) {printf("start speed %g\n", tip.v[2]); EXPECT_LT(std::abs(tip.v[2]), 1e-3 * 0.02);  }// speed of a rigid shaft: 0.02 m/s
-    double& far = now.t < 0.5 + 1e-9 ? rising : after;
-    far = std::max(far, std::abs(tip.r[2] - ramp(now.t)));
-    if (next < std::size(table) && now.t > table[next].t - 1e-9)
-      held(claim("deflection of the tip [m]"), tip.r[2], table[next].u, 2e-6, {equals("t", table[next].t), 0.01}), ++next;
+    // The drive starts with 0.02 rad/s. Only the inertia of the shaft carries this jump to the arm.
+    if (now.t < 1e-9) {
+      EXPECT_LT(std::abs(tip.v[2]), 1e-3 * 0.02);
+    }
+    double& distance = now.t < 0.5 + 1e-9 ? rising : after;
+    distance = std::max(distance, std::abs(tip.r[2] - ramp(now.t)));
+    if (next == std::size(table) || now.t < table[next].t - 1e-9) continue;
+    held(claim("deflection of the tip [m]"), tip.r[2], table[next].u, tolerance, {equals("t", table[next].t), 0.01});
+    ++next;
   }
   EXPECT_EQ(next, std::size(table));
-  held(claim("largest distance from the ramp up to 0.5 s [m]"), rising, 1.4677e-4, 2e-6);
-  held(claim("largest distance from the ramp after 0.5 s [m]"), after, 1.79e-5, 2e-6);
+  held(claim("largest distance from the ramp up to 0.5 s [m]"), rising, amplitude, tolerance);
+  held(claim("largest distance from the ramp after 0.5 s [m]"), after, 1.79e-5, tolerance, {.scale = amplitude});
   equilibrium(m.model, m.x);
   Claim const at_rest{"X1", "deflection of the tip at rest [m]", By::closed_form, "sin 0.01, no load", formulation};
   held(at_rest, position(m.model, m.x, m.arm.at(1.0))[2], std::sin(0.01), 1e-10);
@@ -87,7 +99,7 @@ void follows(Index of_shaft, Index of_arm, char const* formulation) {
 
 // With one element for each part the arm stays close to the ramp. It turned by 0.055 rad in the thread.
 template <class B>
-void stays_near(char const* formulation) {
+void stays_near(std::string const& formulation) {
   ShaftAndArm<B> m(1, 1);
   double far = 0.0;
   for (auto const& now : m.run(1e-3)) far = std::max(far, std::abs(now.position(m.arm.at(1.0))[2] - ramp(now.t)));
@@ -95,23 +107,19 @@ void stays_near(char const* formulation) {
               1e-3, {.scale = 0.01});
 }
 
-TEST(ShaftAndArm, AncfBeam) {
-  follows<AncfBeam<>>(2, 4, "AncfBeam, 2 + 4 elements");
-  follows<AncfBeam<>>(2, 16, "AncfBeam, 2 + 16 elements");
-  stays_near<AncfBeam<>>("AncfBeam, 1 + 1 elements, h = 1 ms");
+/// All meshes of an element of order 2, with the tolerance of the case for 2 + 8 elements.
+template <class B>
+void follows_by_elements_of_order_2(std::string const& body) {
+  follows<B>(4, 6e-6, body + ", 2 + 4 elements, h = 0.2 ms");
+  follows<B>(8, 2e-6, body + ", 2 + 8 elements, h = 0.2 ms");
+  stays_near<B>(body + ", 1 + 1 elements, h = 1 ms");
 }
-TEST(ShaftAndArm, Lrvf) {
-  follows<Lrvf<>>(2, 4, "Lrvf, 2 + 4 elements");
-  follows<Lrvf<>>(2, 16, "Lrvf, 2 + 16 elements");
-  stays_near<Lrvf<>>("Lrvf, 1 + 1 elements, h = 1 ms");
-}
-TEST(ShaftAndArm, Se3Beam) {
-  follows<Se3Beam>(2, 4, "Se3Beam, 2 + 4 elements");
-  follows<Se3Beam>(2, 16, "Se3Beam, 2 + 16 elements");
-  stays_near<Se3Beam>("Se3Beam, 1 + 1 elements, h = 1 ms");
-}
+
+TEST(ShaftAndArm, AncfBeam) { follows_by_elements_of_order_2<AncfBeam<>>("AncfBeam"); }
+TEST(ShaftAndArm, Lrvf) { follows_by_elements_of_order_2<Lrvf<>>("Lrvf"); }
+TEST(ShaftAndArm, Se3Beam) { follows_by_elements_of_order_2<Se3Beam>("Se3Beam"); }
 TEST(ShaftAndArm, Ffr) {
-  follows<Ffr>(2, 4, "Ffr, 2 + 4 elements");
+  follows<Ffr>(4, 2e-6, "Ffr, 2 + 4 elements, h = 0.2 ms");
   stays_near<Ffr>("Ffr, 1 + 1 elements, h = 1 ms");
 }
 
