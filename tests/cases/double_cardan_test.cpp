@@ -189,8 +189,8 @@ TEST(DoubleCardan, HasOneDegreeOfFreedom) {
   }
 }
 
-// The velocities of methods of index 3 have an error of order two. That of the middle shaft is 1.3e-4 rad/s at ρ∞ =
-// 0.8, and up to twice as large at 0.5. The output speed is constant and has no such error.
+// The velocities of methods of index 3 have an error of order two. The middle shaft has an error of 1.3e-4 rad/s at ρ∞
+// = 0.8, and of up to twice this value at 0.5. The output speed is constant and has no such error.
 constexpr double order_two = 2e-4;
 
 /// 36 constraint equations of rank 35. A fixed elimination order would drop one equation of the slide. This equation

@@ -1,5 +1,6 @@
-// X15: reactions that contain every force (CASES3 15). A ladder leans on a wall by a contact off its mid-plane (after
-// drake#13888 and #12123). A motor drives a link on a base, which feels the motor's torque once (bullet3#2966, #4451).
+// X15: reactions that contain every force (CASES3 15). A ladder leans on a wall. Its contact is 0.15 m from its
+// mid-plane (after drake#13888 and #12123). A motor drives a link on a base, which feels the motor's torque once
+// (bullet3#2966, #4451).
 
 #include <gtest/gtest.h>
 
