@@ -22,7 +22,7 @@ int main() {
   model.apply(PointMoment<>{.moment = {0, 0, 2.0}}, link.centre(), "motor, on the link");
   model.apply(PointMoment<>{.moment = {0, 0, -2.0}}, base.centre(), "motor, on the base");
   State x = model.reference_state();
-  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 0.1, .step = 1e-3}).run();
+  simulate(model, x, Radau{}, {.end_time = 0.1, .step = 1e-3}).run();
   answer("acceleration of the link [rad/s²]", 10.0, angular_acceleration(model, x, link.centre())[2], 1e-6);
   answer("moment of the ground on the base [N m]", 2.0, reaction(model, x, foot).m[2], 1e-6);
   answer("moment of the hinge about its axis [N m]", 0.0, reaction(model, x, hinge).m[2], 1e-6);
