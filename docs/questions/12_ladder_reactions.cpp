@@ -30,11 +30,12 @@ int main() {
   Placement wall;  // its third axis points at the ladder
   wall.origin = Vec3(2.01, 0, 0);
   wall.axes << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-  model.apply(Wall{.geometry = {.radius = 0.01}, .normal = {.stiffness = 1e9, .damping = 0.0}},
-              upper.at(Vec3(1, 0, 0.15)), model.ground().at(wall), "wall");
+  auto const contact = model.apply(Wall{.geometry = {.radius = 0.01}, .normal = {.stiffness = 1e9, .damping = 0.0}},
+                                   upper.at(Vec3(1, 0, 0.15)), model.ground().at(wall), "wall");
   State x = model.reference_state();
   equilibrium(model, x);
   Wrench<double> const foot = reaction(model, x, pin), middle = reaction(model, x, weld);
+  answer("force of the wall [N]", 19.823321, applied_wrenches(model, x, contact)[0].f.norm(), 1e-5);
   answer("horizontal force of the pin [N]", 19.823321, std::abs(foot.f[0]), 1e-5);
   answer("vertical force of the pin [N]", 68.67, std::abs(foot.f[1]), 1e-5);
   answer("horizontal force of the weld [N]", 19.823321, std::abs(middle.f[0]), 1e-5);

@@ -6,7 +6,6 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/gears.hpp>
 #include <polybody/run/energy_audit.hpp>
-#include <polybody/run/initial_conditions.hpp>
 #include <polybody/vibration/modes.hpp>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -88,27 +87,6 @@ TEST(Motors, GearedRotorAddsItsInertiaTimesTheSquareOfTheRatio) {
   direct.gear_ratio = 1.0;
   auto const drive = arm.model.apply(OnAngle<DcMotor<>>{direct}, bearing, "motor");
   expect_motor_step(arm, drive, 1.0, motor_matrix(motor, 0.01), "rotor with Gear, Radau IIA");
-}
-
-// Torque of 2 N m on 0.2 kg m² [bulletphysics/bullet3#2966, #4451]: 10 rad/s², and the base feels −2 N m once.
-TEST(Motors, BaseFeelsTheTorqueOfAMotorOnce) {
-  using Pin = Joint<Revolute>;
-  using Foot = Joint<Weld>;
-  using Motor = OnAngle<TorqueSpeedCurve<>>;
-  Model<Bodies<Rigid<>>, Joints<Pin, Foot>, Forces<Motor>> model;
-  auto const base = model.add(Rigid<>(5.0, Mat3(Mat3::Identity())), "base");
-  auto const link = model.add(Rigid<>(1.0, Mat3(Mat3::Identity() * 0.2)), "link");
-  auto const foot = model.connect(Foot{Weld{}}, model.ground().at({0, 0, 0}), base.at({0, 0, 0}), "foot");
-  auto const pin = model.connect(Pin{Revolute{.axis = Vec3::UnitZ()}}, base.at({0, 0, 0}), link.at({0, 0, 0}), "pin");
-  model.apply(Motor{{.torque = MonotoneTable({{0.0, 4.0}, {10.0, 4.0}}), .throttle = {0.5}}}, pin, "motor");
-  State x = model.reference_state();
-  make_consistent(model, x);
-  auto const claim = [](char const* what) { return by_formula(what, "M/J", "TorqueSpeedCurve"); };
-  held(claim("acceleration of a link under 2 N m [rad/s²]"), angular_acceleration(model, x, link.at({0, 0, 0})).z(),
-       10.0, 1e-9);
-  held(claim("moment of the ground on the base of a motor [N m]"), reaction(model, x, foot).m.z(), 2.0, 1e-9);
-  held(claim("moment of a driven hinge about its axis [N m]"), reaction(model, x, pin).m.z(), 0.0, 1e-9,
-       {.scale = 2.0});
 }
 
 // A fan: J ω̇ = u(t) (M₀ − b ω) by a straight table, so ω = (M₀/b)(1 − exp(−b U/J)) with U = ∫u dt.

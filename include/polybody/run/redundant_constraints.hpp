@@ -91,6 +91,9 @@ struct ConstraintCurvature {
         zero_(w),
         moved_(w) {
     for (Index i = 0; i < w.size(); ++i) moved_[i] = scattered_sign(i) * (1.0 + 1.0 / double(i + 2));
+    bias(system, moved_, gamma_);
+    rounding_ = 1e-6 * largest_size(gamma_);
+    system.evaluate(x.q, x.v, x.t);
     system.rows_times(moved_, gamma_);
     forward.least_change(system, gamma_, w);
     for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
@@ -101,7 +104,7 @@ struct ConstraintCurvature {
   template <class Solver>
   VecX bent(System& system, ForwardDynamics<Solver>& forward) {
     bias(system, w, gamma_);
-    double const scale = std::max(largest_size(gamma_), largest_size(rest_));
+    double const scale = std::max({largest_size(gamma_), largest_size(rest_), rounding_});
     VecX left = left_of(system, forward, gamma_ - rest_);
     if (scale > 0.0) left /= scale;
     return left;
@@ -130,24 +133,25 @@ struct ConstraintCurvature {
     system.evaluate(x_.q, v, x_.t);
     system.acceleration_bias(gamma);
   }
-  static bool differ(VecX const& c, VecX const& a, VecX const& b) {
+  bool differ(VecX const& c, VecX const& a, VecX const& b) const {
     double sum = 0.0;
     for (Index i = 0; i < c.size(); ++i) sum += c[i] * (a[i] - b[i]);
-    double const scale = largest_size(c) * std::max(largest_size(a), largest_size(b));
+    double const scale = largest_size(c) * std::max({largest_size(a), largest_size(b), rounding_});
     return std::abs(sum) > limit * scale;
   }
 
   State const& x_;
   VecX rest_, gamma_, other_, zero_, moved_;
+  double rounding_ = 0.0;  // lower limit of the scale: without free velocities, w is round-off
 };
 
 }  // namespace detail
 
-/// Warning text if x is a singular configuration, at which the motion can branch, and the velocities of x do not
-/// determine the branch. Such velocities are zero, or belong to several branches. Empty otherwise. Factorises `forward`
-/// at x.
+/// Names of joints whose constraint equations are redundant at x but not nearby, if x is a singular configuration at
+/// which the motion can branch and whose velocities do not determine the branch. Such velocities are zero, or belong to
+/// several branches. Empty otherwise. Factorises `forward` at x.
 template <class Solver>
-[[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+[[gnu::cold]] std::string joints_of_branch_point(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return "";
   forward.hold(system, x.q, x.v, x.t);
   if (forward.redundant_rows().empty()) return "";
@@ -156,16 +160,23 @@ template <class Solver>
   VecX const bent = bending.bent(system, forward);
   for (Index const i : forward.redundant_rows()) {
     if (i < system.velocities() || std::abs(bent[i - system.velocities()]) <= bending.limit) continue;
-    if (!relation.find(system, forward, i) || !bending.is_singular(system, relation.c) ||
-        !bending.leaves_open(system, relation.c))
-      continue;
-    return sentence_of({"The run starts in a singular configuration at t = ", x.t, " s: the constraint equations of ",
-                        detail::names_in(system, relation.c),
-                        " are redundant there, but not nearby. The motion can continue on several branches, and the "
-                        "initial velocities do not select one. The step and the integrator then select the branch. "
-                        "Start near this configuration, or with velocities of one branch."});
+    if (relation.find(system, forward, i) && bending.is_singular(system, relation.c) &&
+        bending.leaves_open(system, relation.c))
+      return detail::names_in(system, relation.c);
   }
   return "";
+}
+
+/// Warning text of a run that starts at x, for the joints of `joints_of_branch_point`. Empty without such joints.
+template <class Solver>
+[[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+  std::string const joints = joints_of_branch_point(system, forward, x);
+  if (joints.empty()) return "";
+  return sentence_of({"The run starts in a singular configuration at t = ", x.t, " s: the constraint equations of ",
+                      joints,
+                      " are redundant there, but not nearby. The motion can continue on several branches, and the "
+                      "initial velocities do not select one. The step and the integrator then select the branch. "
+                      "Start near this configuration, or with velocities of one branch."});
 }
 
 /// Checks that redundant constraint equations agree: c·b = 0 for every c with Gᵀc = 0. b is Φ, Φ̇ or γ of the evaluated

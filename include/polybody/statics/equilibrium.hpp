@@ -4,6 +4,7 @@
 /// Theory: Eqs. 7.16, 7.18.
 
 #include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/run/redundant_constraints.hpp>
 #include <polybody/run/state_checks.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/equilibrium_equations.hpp>
@@ -165,6 +166,17 @@ bool multipliers_at_rest(System& system, State& x) {
     return false;
   }
   return true;
+}
+
+/// Joints of `joints_of_branch_point` in a state at rest. Empty if the state has no factorisation.
+template <class = void>
+[[gnu::cold]] std::string branching_joints(System& system, State const& x) {
+  try {
+    ForwardDynamics<DefaultSolver> forward(system);
+    return joints_of_branch_point(system, forward, x);
+  } catch (Error const&) {
+    return "";
+  }
 }
 
 /// Follows the path from the present state to its end. Returns `converged` at the end, otherwise the reason why the
@@ -331,7 +343,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
       path.refuse_excited();
       double const limit = result == NewtonResult::not_finite ? 0.0 : path.limit_point();
       if (result == NewtonResult::not_finite || !detail::relax(path, start, options, report))
-        path.refuse(result, bad, at);
+        path.refuse(result, bad, at, detail::branching_joints(system, start));
       detail::report_limit_point<>(limit, report);
     }
   }

@@ -304,11 +304,22 @@ struct EquilibriumPath {
   }
   std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
   /// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure according to `result`.
-  [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
-    if (result == NewtonResult::singular)
-      throw SingularMatrix("equilibrium.singular", {"equilibrium: the stiffness is singular", at, ", first at ",
-                                                    ErrorObject{system.name_of(std::max<Index>(first_bad, 0))},
-                                                    ". Fix every body, or pass a limit point with equilibrium_path."});
+  /// \param branching joints of `joints_of_branch_point` at the start; empty if there are none
+  [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at,
+                                      std::string const& branching) const {
+    if (result == NewtonResult::singular) {
+      std::string const first = system.name_of(std::max<Index>(first_bad, 0));
+      if (!branching.empty())
+        throw SingularMatrix(
+            "equilibrium.singular",
+            {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{first},
+             ". The initial state is a singular configuration: the constraint equations of ", branching,
+             " are redundant there, but not nearby, and their forces are not determined. Replace one of these joints "
+             "by a joint with fewer constraint equations, or fix the bodies in another way."});
+      throw SingularMatrix("equilibrium.singular",
+                           {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{first},
+                            ". Fix every body, or pass a limit point with equilibrium_path."});
+    }
     if (result == NewtonResult::not_finite)
       throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at,
                                                       ". Check the forces and the initial state."});
