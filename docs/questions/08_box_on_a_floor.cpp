@@ -1,7 +1,7 @@
 // title: Box that slides along a floor
 // thread: https://github.com/Genesis-Embodied-AI/genesis-world/issues/3115
 // words: sliding box, Coulomb friction, tipping, box on plane contact, stopping distance
-// wanted: A box that lies on a floor is launched along it. It lifted off by 0.3 m and tumbled.
+// wanted: A box on a floor is launched along it. It lifted off by 0.3 m and tumbled.
 // inputs: Cube of 0.1 m and 1 kg, μ = 0.5, 6 m/s. The feet are 0.045 m before and behind the centre, 1e5 N/m and
 //     30 N s/m each. Regularised friction with a slip speed of 1e-3 m/s.
 // right: Uniform deceleration μ g: time v/(μ g), distance v²/(2 μ g). Moments about the centre: a front foot has the

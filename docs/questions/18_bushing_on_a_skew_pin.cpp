@@ -22,7 +22,8 @@ int main() {
   auto const ground = model.ground().at({0, 0, 0});
   auto const hinge = model.connect(Hinge{Revolute{.axis = n}}, ground, wheel.centre(), "hinge");
   model.connect(
-      Mount{{}, {.stiffness = Bushing::diagonal({0, 0, 0}, about), .damping = Bushing::diagonal({0, 0, 0}, {0, 0, 0})}},
+      Mount{{.axis = {0, 0, 1}},
+            {.stiffness = Bushing::diagonal({0, 0, 0}, about), .damping = Bushing::diagonal({0, 0, 0}, {0, 0, 0})}},
       ground, wheel.centre(), "bushing");
   State x = model.reference_state();
   answer("frequency [rad/s]", std::sqrt(k / inertia), modes(model, x, 1).frequency[0], 1e-9);

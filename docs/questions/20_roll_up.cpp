@@ -32,10 +32,10 @@ int main() {
   };
   double const pi = std::numbers::pi;
   Vec3 const arc = tip(1.2 * pi), longer = tip(1.6 * pi), circle = tip(2.0 * pi);
-  answer("x of the tip, λ = 1.2 [m]", length * std::sin(1.2 * pi) / (1.2 * pi), arc[0], 1e-8);
-  answer("z of the tip, λ = 1.2 [m]", length * (1.0 - std::cos(1.2 * pi)) / (1.2 * pi), arc[2], 1e-8);
-  answer("x of the tip, λ = 1.6 [m]", length * std::sin(1.6 * pi) / (1.6 * pi), longer[0], 1e-8);
-  answer("z of the tip, λ = 1.6 [m]", length * (1.0 - std::cos(1.6 * pi)) / (1.6 * pi), longer[2], 1e-8);
-  answer("gap of the circle, λ = 2 [m]", 0.0, circle.norm(), 1e-8);
+  answer("x of the tip, λ = 1.2 [m]", length * std::sin(1.2 * pi) / (1.2 * pi), arc[0], 1e-9);
+  answer("z of the tip, λ = 1.2 [m]", length * (1.0 - std::cos(1.2 * pi)) / (1.2 * pi), arc[2], 1e-9);
+  answer("x of the tip, λ = 1.6 [m]", length * std::sin(1.6 * pi) / (1.6 * pi), longer[0], 1e-9);
+  answer("z of the tip, λ = 1.6 [m]", length * (1.0 - std::cos(1.6 * pi)) / (1.6 * pi), longer[2], 1e-9);
+  answer("gap of the circle, λ = 2 [m]", 0.0, circle.norm(), 1e-9);
   return wrong_answers();
 }

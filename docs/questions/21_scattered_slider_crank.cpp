@@ -29,7 +29,8 @@ int main() {
   auto const rod = model.add(Rigid<>(1.0, inertia, Placement::at({0.3, 0.2, 0.1}, {0, 0, 0.7})), "rod");
   auto const piston = model.add(Rigid<>(1.0, inertia, Placement::at({0.4, 0.05, -0.02})), "piston");
   model.connect(hinge, ground, crank.at(Vec3(-0.5 * r, 0, 0)), "bearing");
-  model.connect(Turn{{.law = {angle}}}, ground, crank.at(Vec3(-0.5 * r, 0, 0)), "angle of the crank");
+  model.connect(Turn{{.law = {angle}, .axis = {0, 0, 1}}}, ground, crank.at(Vec3(-0.5 * r, 0, 0)),
+                "angle of the crank");
   model.connect(hinge, crank.at(Vec3(0.5 * r, 0, 0)), rod.at(Vec3(-0.5 * l, 0, 0)), "crank pin");
   model.connect(hinge, rod.at(Vec3(0.5 * l, 0, 0)), piston.centre(), "piston pin");
   model.connect(Guide{{.axis = {1, 0, 0}}}, ground, piston.centre(), "cylinder");

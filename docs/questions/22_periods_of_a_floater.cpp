@@ -20,7 +20,7 @@ int main() {
   double const m = 1.6e7, J = 9e9, d = 12.0, ku = 7e4, kt = 1.5e9, turn = 2.0 * std::numbers::pi;
   auto const floater =
       model.add(Rigid<>(m, Mat3(Vec3(J, J, 1.2e10).asDiagonal()), Placement::at({0, 0, -d})), "floater");
-  Water const water{{},
+  Water const water{{.axis = {0, 0, 1}},
                     {.stiffness = Bushing::diagonal({ku, ku, 4e6}, {kt, kt, 1.1e8}),
                      .damping = Bushing::diagonal({0, 0, 0}, {0, 0, 0})}};
   model.connect(water, model.ground().at({0, 0, 0}), floater.at(Vec3(0, 0, d)), "water");
