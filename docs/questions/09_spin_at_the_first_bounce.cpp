@@ -34,10 +34,10 @@ int main() {
   Frame<double> const slides = bounced(0.1), grips = bounced(0.4);
   double const impulse = 0.1 * (1.0 + e) * down;
   answer("normal speed after the impact [m/s]", e * down, slides.v[2], 1e-5);
-  answer("speed along the floor, μ = 0.1 [m/s]", v - impulse, slides.v[0], 1e-3);
-  answer("spin, μ = 0.1 [rad/s]", 2.5 * impulse / r, slides.w[1], 0.02);
-  answer("speed along the floor, μ = 0.4 [m/s]", 5.0 / 7.0 * v, grips.v[0], 0.04);
-  answer("spin, μ = 0.4 [rad/s]", 5.0 / 7.0 * v / r, grips.w[1], 0.8);
+  answer("speed along the floor, μ = 0.1 [m/s]", v - impulse, slides.v[0], 1e-4);
+  answer("spin, μ = 0.1 [rad/s]", 2.5 * impulse / r, slides.w[1], 2e-3);
+  answer("speed along the floor, μ = 0.4 [m/s]", 5.0 / 7.0 * v, grips.v[0], 1e-6);
+  answer("spin, μ = 0.4 [rad/s]", 5.0 / 7.0 * v / r, grips.w[1], 1e-5);
   answer("m r v + J ω, μ = 0.4 [kg m²/s]", m * r * v, m * r * grips.v[0] + 0.4 * m * r * r * grips.w[1], 1e-9);
   return wrong_answers();
 }

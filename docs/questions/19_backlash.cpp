@@ -7,7 +7,8 @@
 // inputs: J = 0.01 kg m², play 0.2 rad, 100 N m/rad and 0.2 N m s/rad at the flanks, from the middle at v = 2 rad/s.
 // right: In contact J ẍ + c ẋ + k x = 0, until the torque k x + c ẋ is zero after t = 2 arccos ζ/ω_d. With a = arccos ζ
 // the
-//     speed is then e v, e = exp(−2 ζ a/√(1 − ζ²)) = 0.7440794. The first torque is c v, and the largest penetration is
+//     speed is then e v, e = exp(−2 ζ a/√(1 − ζ²)) = 0.7440794. It leaves the flank
+//     while k x = c e v. The largest penetration is
 //     v/ω exp(−ζ a/√(1 − ζ²)).
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
@@ -37,7 +38,7 @@ int main() {
   answer("largest penetration [rad]", v / omega * std::exp(-zeta * a / root), x.q[2] - 0.5 * play, 1e-8);
   run_to(0.1);
   answer("speed after the first contact [rad/s]", -e * v, x.v[2], 1e-7);
-  answer("angle at 0.1 s [rad]", 0.5 * play - e * v * (0.1 - leaving), x.q[2], 1e-7);
+  answer("angle at 0.1 s [rad]", 0.5 * play + c * e * v / k - e * v * (0.1 - leaving), x.q[2], 1e-7);
   run_to(0.3);
   answer("speed after the second contact [rad/s]", e * e * v, x.v[2], 1e-7);
   answer("largest pull, torque times angle [N m rad]", 0.0, pull, 0.0);

@@ -26,11 +26,11 @@ int main() {
   model.connect(water, model.ground().at({0, 0, 0}), floater.at(Vec3(0, 0, d)), "water");
   VecX const period = turn * modes(model, model.reference_state(), 6).frequency.cwiseInverse();
   double const a = m * J, b = m * kt + ku * (J + m * d * d), root = std::sqrt(b * b - 4 * a * ku * kt);
-  answer("surge with pitch [s]", turn * std::sqrt(2 * a / (b - root)), period[0], 1e-6);
-  answer("sway with roll [s]", turn * std::sqrt(2 * a / (b - root)), period[1], 1e-6);
-  answer("yaw [s]", turn * std::sqrt(1.2e10 / 1.1e8), period[2], 1e-6);
-  answer("pitch with surge [s]", turn * std::sqrt(2 * a / (b + root)), period[3], 1e-6);
-  answer("roll with sway [s]", turn * std::sqrt(2 * a / (b + root)), period[4], 1e-6);
-  answer("heave [s]", turn * std::sqrt(m / 4e6), period[5], 1e-6);
+  answer("surge with pitch [s]", turn * std::sqrt(2 * a / (b - root)), period[0], 1e-7);
+  answer("sway with roll [s]", turn * std::sqrt(2 * a / (b - root)), period[1], 1e-7);
+  answer("yaw [s]", turn * std::sqrt(1.2e10 / 1.1e8), period[2], 1e-7);
+  answer("pitch with surge [s]", turn * std::sqrt(2 * a / (b + root)), period[3], 1e-7);
+  answer("roll with sway [s]", turn * std::sqrt(2 * a / (b + root)), period[4], 1e-7);
+  answer("heave [s]", turn * std::sqrt(m / 4e6), period[5], 1e-7);
   return wrong_answers();
 }
