@@ -4,9 +4,9 @@
 // wanted: A box on a floor is launched along it. It lifted off by 0.3 m and tumbled.
 // inputs: Cube of 0.1 m and 1 kg, μ = 0.5, 6 m/s. The feet are 0.045 m before and behind the centre, 1e5 N/m and
 //     30 N s/m each. Regularised friction with a slip speed of 1e-3 m/s.
-// right: Uniform deceleration μ g: time v/(μ g), distance v²/(2 μ g). Moments about the centre: a front foot has the
-// load
-//     m g/4 (1 + μ h/b) and a rear foot m g/4 (1 − μ h/b), with h = 0.05 m and b = 0.045 m, so no foot lifts off.
+// right: Uniform deceleration μ g: time v/(μ g), distance v²/(2 μ g). Moments about the centre: a front foot has
+//     the load m g/4 (1 + μ h/b) and a rear foot m g/4 (1 − μ h/b), with h = 0.05 m and b = 0.045 m, so no foot
+//     lifts off.
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

@@ -4,10 +4,9 @@
 // wanted: A ball without spin bounces on a rough floor. It began to rotate only after its last bounce.
 // inputs: Ball of 0.5 kg and 0.05 m, 2 m/s down and 3 m/s along, e = 0.8, μ = 0.1 or 0.4, no gravity. Contact of
 //     1e6 N/m, regularised friction with a slip speed of 0.01 m/s.
-// right: The normal impulse is m (1 + e) v_n = 1.8 N s. With μ = 0.1 the ball slides during the whole impact, so its
-// speed
-//     falls by μ (1 + e) v_n and its spin is 5 μ (1 + e) v_n/(2 r). With μ = 0.4 it grips and leaves rolling, with 5/7
-//     of its speed. Both keep the angular momentum m r v about the contact point.
+// right: The normal impulse is m (1 + e) v_n = 1.8 N s. With μ = 0.1 the ball slides during the whole impact, so
+//     its speed falls by μ (1 + e) v_n and its spin is 5 μ (1 + e) v_n/(2 r). With μ = 0.4 it grips and leaves
+//     rolling, with 5/7 of its speed. Both keep the angular momentum m r v about the contact point.
 #include <polybody/polybody.hpp>
 
 #include "answer.hpp"

@@ -1,12 +1,12 @@
 // title: Tolerance beside an orbital speed
 // thread: https://github.com/AVSLab/basilisk/pull/1392
 // words: adaptive step size, relative tolerance, error norm, satellite, solar panel, attitude
-// wanted: An adaptive integrator controls the attitude of a satellite. One error norm contained the orbital speed of
-//     7600 m/s, so the steps were too long for the attitude.
-// inputs: Hub of 100 kg and 20 kg m², panel of 10 kg and 2 m on a pin 0.5 m from the hub's centre, torsion spring of
-//     5 N m/rad. In the plane, at 7600 m/s and 0.3 rad/s, panel at 0.2 rad. Tolerance 1e-8.
-// right: DOP853 of SciPy at a tolerance of 1e-13, without the common motion. By Galilean invariance the angles and the
-//     number of steps do not depend on the common motion.
+// wanted: An adaptive integrator controls the attitude of a satellite. One error norm contained the orbital speed
+//     of 7600 m/s, so the steps were too long for the attitude.
+// inputs: Hub of 100 kg and 20 kg m², panel of 10 kg and 2 m on a pin 0.5 m from the hub's centre, torsion spring
+//     of 5 N m/rad. In the plane, at 7600 m/s and 0.3 rad/s, panel at 0.2 rad. Tolerance 1e-8.
+// right: DOP853 of SciPy at a tolerance of 1e-13, without the common motion. By Galilean invariance the angles and
+//     the number of steps do not depend on the common motion.
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

@@ -2,11 +2,11 @@
 // thread: https://github.com/avianphysics/avian/pull/993
 // words: gyroscopic torque, Euler equations, intermediate axis, tennis racket, Dzhanibekov, energy drift
 // wanted: A free body rotates about its axis of largest inertia, which is stable. Its energy grew until it rotated
-// about
-//     the axis of middle inertia.
-// inputs: Moments of inertia 0.1, 0.2 and 0.3 kg m², angular velocity (0.2, 0.1, 10) rad/s in body axes, no forces.
-// right: DOP853 of SciPy at a tolerance of 1e-13. Energy ½ Σ J ω² = 15.003 J, angular momentum 3.0001333304 N m s; both
-//     are constant. About the middle axis this angular momentum has 22.5 J.
+//     about the axis of middle inertia.
+// inputs: Moments of inertia 0.1, 0.2 and 0.3 kg m², angular velocity (0.2, 0.1, 10) rad/s in body axes, no
+//     forces.
+// right: DOP853 of SciPy at a tolerance of 1e-13. Energy ½ Σ J ω² = 15.003 J, angular momentum 3.0001333304 N m s;
+//     both are constant. About the middle axis this angular momentum has 22.5 J.
 #include <polybody/polybody.hpp>
 
 #include "answer.hpp"

@@ -2,11 +2,10 @@
 // thread: https://github.com/newton-physics/newton/issues/3489
 // words: conveyor belt, surface velocity, moving surface, kinematic body, friction work, slip
 // wanted: A box is laid on a moving belt. The test of the example did not verify the motion of the box.
-// inputs: Box of 2 kg, μ = 0.25, belt at 0.8 m/s. The belt is a body on a slide with a prescribed translation. Bristle
-//     friction of 1e6 N/m and 1500 N s/m.
-// right: The box accelerates with μ g until it has the speed v of the belt: slip for v/(μ g) over v²/(2 μ g). The heat
-// is
-//     ½ m v², and the drive does the work m v².
+// inputs: Box of 2 kg, μ = 0.25, belt at 0.8 m/s. The belt is a body on a slide with a prescribed translation.
+//     Bristle friction of 1e6 N/m and 1500 N s/m.
+// right: The box accelerates with μ g until it has the speed v of the belt: slip for v/(μ g) over v²/(2 μ g). The
+//     heat is ½ m v², and the drive does the work m v².
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

@@ -3,10 +3,9 @@
 // words: position actuator, PD control, steady-state error, gravity compensation, target not reached, PID
 // wanted: A position servo holds an arm at a target angle. A commanded angle of 1.57 rad gave 1.63 rad.
 // inputs: Arm of 1.5 kg with its centre 0.5 m below the hinge, target 1.2 rad. PD servo with 25 N m/rad and 8 N m
-// s/rad;
-//     PID servo with 30 N m/(rad s) more.
-// right: The servo has torque only if it has an error: k_p (r − ϑ) = m g l sin ϑ, solved by fixed-point iteration. An
-//     integral part removes the error, and its torque at the target is m g l sin r.
+//     s/rad; PID servo with 30 N m/(rad s) more.
+// right: The servo has torque only if it has an error: k_p (r − ϑ) = m g l sin ϑ, solved by fixed-point iteration.
+//     An integral part removes the error, and its torque at the target is m g l sin r.
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

@@ -1,10 +1,11 @@
 // title: Torsion bushing on a skew pin
 // thread: https://github.com/opensim-org/opensim-core/issues/638
 // words: bushing force, rotational stiffness, torsional spring, stiffness matrix, joint axes, frames
-// wanted: A rotational bushing acts on a hinge, and the axes of the bushing are not those of the hinge. Tests covered
-//     translations only.
-// inputs: Bushing of 40, 90 and 160 N m/rad about x, y and z. Hinge along n = (1, 2, 2)/3, inertia 0.5 kg m² about it.
-// right: The rotation is θ n, the moment of the bushing is K n θ. About the hinge the stiffness is k = nᵀK n =
+// wanted: A rotational bushing acts on a hinge, and the axes of the bushing are not those of the hinge. Tests
+//     covered translations only.
+// inputs: Bushing of 40, 90 and 160 N m/rad about x, y and z. Hinge along n = (1, 2, 2)/3, inertia 0.5 kg m² about
+//     it.
+// right: The rotation is ϑ n, the moment of the bushing is K n ϑ. About the hinge the stiffness is k = nᵀK n =
 //     1040/9 N m/rad and the frequency √(k/J); the hinge carries the remainder K n − k n of the moment.
 #include <polybody/polybody.hpp>
 #include <polybody/vibration.hpp>

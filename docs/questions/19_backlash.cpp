@@ -1,15 +1,13 @@
 // title: Backlash that never pulls
 // thread: https://github.com/modelica/ModelicaStandardLibrary/issues/2247
 // words: ElastoBacklash, ElastoGap, gear play, dead zone, contact damping, pulling force, restitution
-// wanted: A rotor moves within the play of a spring with a damper. As the flanks separate, the damper can pull; the
-// laws of
-//     two library parts differ there.
-// inputs: J = 0.01 kg m², play 0.2 rad, 100 N m/rad and 0.2 N m s/rad at the flanks, from the middle at v = 2 rad/s.
-// right: In contact J ẍ + c ẋ + k x = 0, until the torque k x + c ẋ is zero after t = 2 arccos ζ/ω_d. With a = arccos ζ
-// the
-//     speed is then e v, e = exp(−2 ζ a/√(1 − ζ²)) = 0.7440794. It leaves the flank
-//     while k x = c e v. The largest penetration is
-//     v/ω exp(−ζ a/√(1 − ζ²)).
+// wanted: A rotor moves within the play of a spring with a damper. As the flanks separate, the damper can pull;
+//     the laws of two library parts differ there.
+// inputs: J = 0.01 kg m², play 0.2 rad, 100 N m/rad and 0.2 N m s/rad at the flanks, from the middle at v = 2
+//     rad/s.
+// right: In contact J ẍ + c ẋ + k x = 0, until the torque k x + c ẋ is zero after t = 2 arccos ζ/ω_d. With a =
+//     arccos ζ the speed is then e v, e = exp(−2 ζ a/√(1 − ζ²)) = 0.7440794, at the penetration c e v/k. The
+//     largest penetration is v/ω exp(−ζ a/√(1 − ζ²)).
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

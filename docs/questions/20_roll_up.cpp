@@ -1,12 +1,12 @@
 // title: Beam that a tip moment rolls up
 // thread: https://github.com/OpenFAST/openfast/issues/316
 // words: cantilever, large deflection, geometrically exact beam, roll-up test, BeamDyn, load steps
-// wanted: A moment at its tip bends a cantilever of 10 m to a circle. The solver converged for λ = 0.4 and 0.8, but not
-// for
-//     1.2 to 2.
+// wanted: A moment at its tip bends a cantilever of 10 m to a circle. The solver converged for λ = 0.4 and 0.8,
+//     but not for 1.2 to 2.
 // inputs: Length 10 m, EI = 8.33e4 N m², EA = 1e6 N, GA = 4e5 N, GJ = 6e4 N m²; moment λ π EI/L. Three elements
 //     `Se3Beam`, ten load steps.
-// right: The curvature M/EI is uniform, without stretch and shear: x = L sin ϑ/ϑ and z = L (1 − cos ϑ)/ϑ with ϑ = λ π.
+// right: The curvature M/EI is uniform, without stretch and shear: x = L sin ϑ/ϑ and z = L (1 − cos ϑ)/ϑ with ϑ =
+//     λ π.
 #include <polybody/polybody.hpp>
 #include <polybody/se3_beam.hpp>
 

@@ -1,14 +1,12 @@
 // title: Assembly of a scattered slider-crank
 // thread: https://github.com/FreeCAD/FreeCAD/issues/30536
 // words: assembly solver, closed loop, crankshaft, connecting rod, piston, overconstrained, initial configuration
-// wanted: Crank, rod and piston are assembled. The solver failed at the joint that closes the loop, unless the user
-// dragged
-//     the rod to its place first.
-// inputs: Crank of 0.05 m, rod of 0.15 m. The crank is turned to 60°. The bodies start up to 0.3 m and 40° beside their
-//     places, in space, with three hinges about z and a cylindrical guide along x.
-// right: With β = arcsin(r sin 60°/l) for the rod, the piston is at r cos 60° + l cos β. The loop is in a plane, so 2
-// of the
-//     20 equations are redundant.
+// wanted: Crank, rod and piston are assembled. The solver failed at the joint that closes the loop, unless the
+//     user dragged the rod to its place first.
+// inputs: Crank of 0.05 m, rod of 0.15 m. The crank is turned to 60°. The bodies start up to 0.3 m and 40° beside
+//     their places, in space, with three hinges about z and a cylindrical guide along x.
+// right: With β = arcsin(r sin 60°/l) for the rod, the piston is at r cos 60° + l cos β. The loop is in a plane,
+//     so 2 of the 20 equations are redundant.
 #include <polybody/polybody.hpp>
 
 #include <numbers>

@@ -1,11 +1,12 @@
 // title: Payload on a winch
 // thread: https://github.com/google-deepmind/mujoco/issues/1704
 // words: cable of variable length, crane, hoist, tension only, slack rope, tendon, unilateral spring
-// wanted: A cable on a winch carries a payload, and does not push. Its natural length changes during the simulation.
+// wanted: A cable on a winch carries a payload, and does not push. Its natural length changes during the
+//     simulation.
 // inputs: 10 kg, EA = 1e4 N, 200 N s/m, free length 5 m. The winch reels 2 m within 4 s. A second winch unreels
 //     7.5 t² m, faster than free fall, from a cable without tension.
-// right: A cable with the free length L carries m g at the length L (1 + m g/EA). A slack cable has no tension, so the
-//     second payload falls by g t²/2.
+// right: A cable with the free length L carries m g at the length L (1 + m g/EA). A slack cable has no tension, so
+//     the second payload falls by g t²/2.
 #include <polybody/parts.hpp>
 #include <polybody/polybody.hpp>
 

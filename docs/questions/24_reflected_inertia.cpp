@@ -3,9 +3,8 @@
 // words: gear ratio, transmission, reflected inertia, rotor inertia, armature, actuator, gearbox
 // wanted: A motor drives a hinge through a gear. The ratio multiplies its torque, and its rotor adds inertia.
 // inputs: Arm with 0.2 kg m² about its hinge, rotor with 1e-4 kg m², ratio 80, 0.05 N m on the rotor, no gravity.
-// right: Power and kinetic energy give (J + n² J_r) α = n T, so α = 4/0.84 rad/s². The gear transmits J α to the arm.
-// Without
-//     the rotor the acceleration would be 20 rad/s².
+// right: Power and kinetic energy give (J + n² J_r) α = n T, so α = 4/0.84 rad/s². The gear transmits J α to the
+//     arm. Without the rotor the acceleration would be 20 rad/s².
 #include <polybody/polybody.hpp>
 
 #include "answer.hpp"
