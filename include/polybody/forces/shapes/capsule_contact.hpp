@@ -16,10 +16,10 @@ struct CapsuleOnSphere {
   Required<double> sphere;  ///< radius of the sphere [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the radius of the capsule");
-    require_not_negative(length, name, ": the length of the capsule");
-    require_not_negative(sphere, name, ": the radius of the sphere");
-    require_positive(radius + sphere, name, ": the sum of the radii of capsule and sphere");
+    require_not_negative(radius, name, ": the radius of the capsule", "m");
+    require_not_negative(length, name, ": the length of the capsule", "m");
+    require_not_negative(sphere, name, ": the radius of the sphere", "m");
+    require_positive(radius + sphere, name, ": the sum of the radii of capsule and sphere", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -80,12 +80,12 @@ struct CapsuleOnCapsule {
   Required<double> taper;                ///< loss of depth along capsule a [m]; small compared with the penetration
 
   void check(std::string const& name) const {
-    require_not_negative(radius_a, name, ": the radius of the first capsule");
-    require_not_negative(length_a, name, ": the length of the first capsule");
-    require_not_negative(radius_b, name, ": the radius of the second capsule");
-    require_not_negative(length_b, name, ": the length of the second capsule");
-    require_positive(radius_a + radius_b, name, ": the sum of the radii of the capsules");
-    require_positive(taper, name, ": the taper of the capsules");
+    require_not_negative(radius_a, name, ": the radius of the first capsule", "m");
+    require_not_negative(length_a, name, ": the length of the first capsule", "m");
+    require_not_negative(radius_b, name, ": the radius of the second capsule", "m");
+    require_not_negative(length_b, name, ": the length of the second capsule", "m");
+    require_positive(radius_a + radius_b, name, ": the sum of the radii of the capsules", "m");
+    require_positive(taper, name, ": the taper of the capsules", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
