@@ -34,11 +34,14 @@ struct CapsuleOnSphere {
   /// and b. A depth of at most 5 % of the sum of the radii does not count.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
-    auto const place = [](Frame<double> const(&f)[2]) {
-      Vec3 const arm = f[1].r - f[0].r;
-      return detail::in_axes<double>(detail::axes_about<double>(detail::axis_of<double>(f[0].A, 0)), arm);
-    };
-    return detail::passes_through_box(core(), place(from), place(to), radius + sphere);
+    Mat3 const axes = detail::axes_about<double>(detail::axis_of<double>(from[0].A, 0));
+    Vec3 const x = detail::axis_of<double>(to[0].A, 0), y = axes.col(1),
+               z = x.cross(y);             // axes that turn with the axis
+    if (!(z.dot(z) > 0.01)) return false;  // turned by a quarter of a turn
+    Mat3 turned;
+    turned << x, z.cross(x).normalized(), z.normalized();
+    return detail::passes_through_box(core(), detail::in_axes<double>(axes, Vec3(from[1].r - from[0].r)),
+                                      detail::in_axes<double>(turned, Vec3(to[1].r - to[0].r)), radius + sphere);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
