@@ -145,7 +145,7 @@ TEST(DriveParameters, OfBeltsAreNamedWithThePulley) {
   belt.senses = {1, 1};
   EXPECT_EQ(refusal(belt), "");
   belt.radii = {0.1};
-  EXPECT_EQ(refusal(belt), "\"hostile\": the radius of pulley 1 must be positive and finite, but is 0.");
+  EXPECT_EQ(refusal(belt), "\"hostile\": the radius of pulley 1 must be positive and finite, but is 0 m.");
 }
 
 }  // namespace

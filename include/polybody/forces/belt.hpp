@@ -52,13 +52,13 @@ struct BeltAndPulley {
                                               ///< pulley 0 to pulley 1, otherwise −1; a crossed belt has +1 and −1
 
   void check(std::string const& name) const {
-    require_positive(axial_stiffness, name, ": the axial stiffness EA");
-    require_not_negative(damping, name, ": the damping");
-    require_not_negative(pretension, name, ": the pretension");
+    require_positive(axial_stiffness, name, ": the axial stiffness EA", "N");
+    require_not_negative(damping, name, ": the damping", "N s");
+    require_not_negative(pretension, name, ": the pretension", "N");
     for (std::size_t k = 0; k < N; ++k) {
       std::string const pulley = " of pulley " + std::to_string(k);
-      require_positive(radii[k], name, ": the radius" + pulley);
-      require_finite(centres[k], name, ": the centre" + pulley);
+      require_positive(radii[k], name, ": the radius" + pulley, "m");
+      require_finite(centres[k], name, ": the centre" + pulley, "m");
       if (senses[k] != 1 && senses[k] != -1)
         throw InvalidInput("belt.sense", {ErrorObject{name}, ": the sense" + pulley, " must be 1 or -1, but is ",
                                           ErrorValue{senses[k]}, "."});

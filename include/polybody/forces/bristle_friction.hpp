@@ -23,8 +23,8 @@ struct BristleFriction {
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of friction");
-    require_positive(stiffness, name, ": the bristle stiffness of the friction");
-    require_positive(damping, name, ": the bristle damping of the friction");
+    require_positive(stiffness, name, ": the bristle stiffness of the friction", "N/m");
+    require_positive(damping, name, ": the bristle damping of the friction", "N s/m");
   }
 };
 
@@ -60,12 +60,19 @@ struct Contact<G, N, BristleFriction> {
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, std::array<T, states> const& z, double) const {
     std::array<Wrench<T>, 2> w;
-    for_each_bristle<T>(f, z, [&](ContactPoint<T> const& p, Bristle<T> const& bristle, T const& n) {
-      if (value_of(n) > 0.0)
-        detail::act<T>(detail::shifted<T>(-bristle.resistance(friction), p.normal, n), p.place, f, w);
+    for_each_touching<T>(f, z, [&](ContactPoint<T> const& p, Vec<T, 3> const& force, T const& n) {
+      if (value_of(n) > 0.0) detail::act<T>(force, p.place, f, w);
       detail::act_at_handover<T>(normal, p, f, w);
     });
     return w;
+  }
+  /// Calls visit(point, F, N) for every contact point, with the force F (3) on a and the normal force N [N] at the
+  /// deflections z.
+  template <StateScalar T, class Visit>
+  void for_each_touching(std::array<Frame<T>, 2> const& f, std::array<T, states> const& z, Visit&& visit) const {
+    for_each_bristle<T>(f, z, [&](ContactPoint<T> const& p, Bristle<T> const& bristle, T const& n) {
+      visit(p, detail::shifted<T>(-bristle.resistance(friction), p.normal, n), n);
+    });
   }
   template <StateScalar T>
   std::array<T, states> rates(std::array<Frame<T>, 2> const& f, std::array<T, states> const& z, double) const {

@@ -265,7 +265,7 @@ struct SphereOnPlane {
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
   Required<double> radius;  ///< radius of the sphere [m]
 
-  void check(std::string const& name) const { require_not_negative(radius, name, ": the sphere's radius"); }
+  void check(std::string const& name) const { require_not_negative(radius, name, ": the sphere's radius", "m"); }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
     Vec3 const arm = a.r - b.r, n(b.A(0, 2), b.A(1, 2), b.A(2, 2));
@@ -290,8 +290,8 @@ struct SphereOnSphere {
   Required<double> radius_b;  ///< radius of the sphere about marker b [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius_a, name, ": the radius of the first sphere");
-    require_not_negative(radius_b, name, ": the radius of the second sphere");
+    require_not_negative(radius_a, name, ": the radius of the first sphere", "m");
+    require_not_negative(radius_b, name, ": the radius of the second sphere", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -329,8 +329,8 @@ struct SphereOnCylinder {
   Required<double> cylinder;  ///< radius of the cylinder [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the sphere's radius");
-    require_positive(cylinder, name, ": the cylinder's radius");
+    require_not_negative(radius, name, ": the sphere's radius", "m");
+    require_positive(cylinder, name, ": the cylinder's radius", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {

@@ -19,7 +19,7 @@ struct Friction {
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of friction");
-    if (coefficient > 0.0) require_positive(slip_speed, name, ": the slip speed of the friction");
+    if (coefficient > 0.0) require_positive(slip_speed, name, ": the slip speed of the friction", "m/s");
   }
   /// Ratio of friction force and slip velocity [N s/m]. \param speed2 squared slip velocity v² [m²/s²] \param n normal
   /// force N [N]

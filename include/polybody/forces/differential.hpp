@@ -25,8 +25,8 @@ struct Differential {
   Required<double> damping;    ///< c [N m s/rad]
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name, ": the stiffness");
-    require_not_negative(damping, name, ": the damping");
+    require_positive(stiffness, name, ": the stiffness", "N m/rad");
+    require_not_negative(damping, name, ": the damping", "N m s/rad");
   }
 
   template <StateScalar T>

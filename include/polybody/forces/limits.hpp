@@ -117,7 +117,7 @@ struct BumpStop {
 
   void check(std::string const& name, ScalarUnits const& unit) const {
     detail::check_limits(lower, upper, name, unit);
-    stop().check(name);
+    stop().check(name, std::string_view(unit.x) == "rad");
   }
   bool is_lossless() const { return damping == 0.0; }  ///< true without damping
   /// Force Q [N] or [N m] at x [m] or [rad] with the rate `rate`.

@@ -44,7 +44,7 @@ struct PointForce {
   Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {
-    require_finite(force, name, ": the force");
+    require_finite(force, name, ": the force", "N");
     check_time_function(law, name + ": the time function");
   }
 
@@ -70,7 +70,7 @@ struct PointMoment {
   Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {
-    require_finite(moment, name, ": the moment");
+    require_finite(moment, name, ": the moment", "N m");
     check_time_function(law, name + ": the time function");
   }
 

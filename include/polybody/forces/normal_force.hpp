@@ -55,8 +55,8 @@ struct SpringDamperContact {
   /// 0.253 for e = 0.95, 0.7, 0.5 and 0.1. With an `onset` δ that is added to the result, the restitution of slow
   /// impacts approaches one: 1 − e ≈ (2/3) c v/(k δ) if v √(m/k) is small compared with δ.
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
-    require_positive(stiffness, "SpringDamperContact: the stiffness");
-    require_positive(mass, "SpringDamperContact: the mass");
+    require_positive(stiffness, "SpringDamperContact: the stiffness", "", "N/m");
+    require_positive(mass, "SpringDamperContact: the mass", "", "kg");
     detail::require_restitution(e, "SpringDamperContact");
     double const lost = -std::log(e);
     double zeta = 0.0;
@@ -72,9 +72,9 @@ struct SpringDamperContact {
   }
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name, ": the contact stiffness");
-    require_not_negative(damping, name, ": the contact damping");
-    require_not_negative(onset, name, ": the onset of the contact damping");
+    require_positive(stiffness, name, ": the contact stiffness", "N/m");
+    require_not_negative(damping, name, ": the contact damping", "N s/m");
+    require_not_negative(onset, name, ": the onset of the contact damping", "m");
   }
   bool is_lossless() const { return damping == 0.0; }  ///< true if an impact conserves energy
   /// Force N ≥ 0 [N] at penetration d [m] with the rate `rate` [m/s].
@@ -107,8 +107,8 @@ struct HertzContact {
   double stiffness() const { return 4.0 / 3.0 * modulus * std::sqrt(radius.value); }  ///< (4/3) E* √R [N/m^(3/2)]
 
   void check(std::string const& name) const {
-    require_positive(modulus, name, ": the contact modulus");
-    require_positive(radius, name, ": the contact radius");
+    require_positive(modulus, name, ": the contact modulus", "Pa");
+    require_positive(radius, name, ": the contact radius", "m");
   }
   bool is_lossless() const { return true; }  ///< true: an impact conserves energy
   /// Force N ≥ 0 [N] at penetration d [m].
@@ -142,16 +142,17 @@ struct HuntCrossleyContact {
   /// 0.768, 0.663 and 0.516 for e = 0.95, 0.7, 0.5 and 0.1. At another velocity w the restitution is that of D w.
   static HuntCrossleyContact with_restitution(double stiffness, double exponent, double e, double speed) {
     detail::require_restitution(e, "HuntCrossleyContact");
-    require_positive(speed, "HuntCrossleyContact: the speed of the impact");
+    require_positive(speed, "HuntCrossleyContact: the speed of the impact", "", "m/s");
     if (e == 1.0) return {.stiffness = stiffness, .exponent = exponent, .damping = 0.0};
     auto const excess = [&](double y) { return (y - std::log1p(y)) + (e * y + std::log1p(-e * y)); };
     double const y = detail::falling_root([&](double x) { return excess(x); }, 0.5 * (1.0 - e), (1.0 - 1e-15) / e);
     return {.stiffness = stiffness, .exponent = exponent, .damping = y / speed};
   }
 
-  void check(std::string const& name) const {
-    require_positive(stiffness, name, ": the contact stiffness");
-    require_not_negative(damping, name, ": the contact damping");
+  /// \throws InvalidInput for invalid parameters; `angular` if the penetration is an angle.
+  void check(std::string const& name, bool angular = false) const {
+    require_positive(stiffness, name, ": the contact stiffness", angular ? "N m/rad^n" : "N/m^n");
+    require_not_negative(damping, name, ": the contact damping", angular ? "s/rad" : "s/m");
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
       throw InvalidInput("contact.exponent",
                          {ErrorObject{name}, ": the exponent of the contact law must be at least 1, but is ",

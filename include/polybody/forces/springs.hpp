@@ -20,9 +20,9 @@ struct SpringDamper {
   Required<double> free_length;  ///< l₀ [m]
 
   void check(std::string const& name) const {
-    require_not_negative(stiffness, name, ": the spring stiffness");
-    require_not_negative(damping, name, ": the damping");
-    require_not_negative(free_length, name, ": the free length");
+    require_not_negative(stiffness, name, ": the spring stiffness", "N/m");
+    require_not_negative(damping, name, ": the damping", "N s/m");
+    require_not_negative(free_length, name, ": the free length", "m");
   }
 
   bool is_lossless() const { return damping == 0.0; }  ///< true without damping
@@ -73,9 +73,9 @@ struct AxialSpring {
 
   template <class = void>  // compiled where it is used
   void check(std::string const& name) const {
-    require_not_negative(stiffness, name, ": the spring stiffness");
-    require_not_negative(damping, name, ": the damping");
-    require_finite(preload, name, ": the preload");
+    require_not_negative(stiffness, name, ": the spring stiffness", "N/m");
+    require_not_negative(damping, name, ": the damping", "N s/m");
+    require_finite(preload, name, ": the preload", "N");
     require_unit(axis, name, ": the axis");
   }
 
@@ -124,9 +124,9 @@ struct MaxwellElement {
   Required<double> free_length;  ///< l₀ [m]
 
   void check(std::string const& name) const {
-    require_positive(stiffness, name, ": the spring stiffness");
-    require_positive(damping, name, ": the damping");
-    require_not_negative(free_length, name, ": the free length");
+    require_positive(stiffness, name, ": the spring stiffness", "N/m");
+    require_positive(damping, name, ": the damping", "N s/m");
+    require_not_negative(free_length, name, ": the free length", "m");
   }
 
   /// Wrenches f_a = N d/l with d = r_b − r_a, l = |d|. The direction is undefined at l = 0.

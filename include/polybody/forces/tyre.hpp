@@ -46,12 +46,12 @@ struct LinearTyre {
   double trail = 0.0;                       ///< pneumatic trail t [m]
 
   void check(std::string const& name) const {
-    require_positive(longitudinal_stiffness, name, ": the longitudinal stiffness of the tyre");
-    require_positive(cornering_stiffness, name, ": the cornering stiffness of the tyre");
+    require_positive(longitudinal_stiffness, name, ": the longitudinal stiffness of the tyre", "N");
+    require_positive(cornering_stiffness, name, ": the cornering stiffness of the tyre", "N/rad");
     require_positive(longitudinal_friction, name, ": the longitudinal friction of the tyre");
     require_positive(lateral_friction, name, ": the lateral friction of the tyre");
-    require_not_negative(camber_stiffness, name, ": the camber stiffness of the tyre");
-    require_finite(trail, name, ": the trail of the tyre");
+    require_not_negative(camber_stiffness, name, ": the camber stiffness of the tyre", "N/rad");
+    require_finite(trail, name, ": the trail of the tyre", "m");
   }
   /// Forces at slip, camber and load.
   template <StateScalar T>

@@ -2,6 +2,7 @@
 /// \file
 /// Model of a URDF file: rigid links, their joints with a policy of choice, and flexible bodies in place of links.
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <variant>
@@ -65,7 +66,7 @@ struct UrdfPoint {
 /// - The damping of a joint is the viscous part of a `DryFriction`. With `slip_speeds`, its friction is the dry part.
 /// - With `stops`, the limits of revolute and prismatic joints are `Limit` forces.
 /// - A joint that mimics another one is a `Gear` if both are revolute joints on one link with parallel axes.
-/// - Limits of effort and speed are data: `robot().joints`.
+/// - Limits of effort and speed are data, `robot().joints`; `servo` gives them to a servo.
 template <class P, class JointList = Joints<>, class ForceList = Forces<>, class... Fs>
 class UrdfModel;
 /// Model with these types.
@@ -134,6 +135,22 @@ class UrdfModel<P, Joints<Js...>, Forces<Xs...>, Fs...> {
     if (auto const* const found = std::get_if<ElementHandle<JointOf<G>>>(&joints_[std::size_t(i)])) return *found;
     throw InvalidInput("urdf.other_joint", {ErrorObject{robot_.where(robot_.joints[std::size_t(i)])},
                                             ": the joint is not a ", G::name, "."});
+  }
+  /// The servo `law` with the limits of the joint `name` as further bounds: `effort` bounds its force, and `velocity`
+  /// its commanded speed. A law like `Servo` or `PidServo` keeps its own bounds if they are smaller. A limit of zero in
+  /// the file is a bound of zero, which the servo refuses when it is applied. \throws InvalidInput for a joint without
+  /// limits.
+  template <class L>
+    requires requires(L servo) { servo.most_force = servo.most_speed; }
+  L servo(std::string const& name, L law) const {
+    UrdfJoint const& j = robot_.joints[std::size_t(robot_.joint(name))];
+    if (!j.limit)
+      throw InvalidInput("urdf.no_limit", {ErrorObject{robot_.where(j)},
+                                           ": the joint has no element <limit> that bounds a servo. Give the servo its "
+                                           "own bounds."});
+    law.most_force = std::min(law.most_force, j.limit->effort);
+    law.most_speed = std::min(law.most_speed, j.limit->velocity);
+    return law;
   }
   /// Marker at the point p of a link that a rigid body carries. \throws InvalidInput for another link.
   template <class = void>  // compiled only if used

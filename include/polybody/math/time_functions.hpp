@@ -99,9 +99,9 @@ struct IntegralOf {
 namespace detail {
 
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
-  require_positive(duration, what, ": the duration");
+  require_positive(duration, what, ": the duration", "s");
   require_finite(target, what, ": the target");
-  require_finite(start, what, ": the start");
+  require_finite(start, what, ": the start", "s");
 }
 
 }  // namespace detail

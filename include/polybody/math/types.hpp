@@ -76,18 +76,19 @@ struct Required {
 };
 
 /// \throws InvalidInput unless `x` is finite and positive. The message begins with `what`, which names the object and
-/// the quantity, and with `part`.
-inline void require_positive(double x, std::string_view what, std::string_view part = {}) {
+/// the quantity, and with `part`; `unit` is the unit of x, empty for a pure number.
+inline void require_positive(double x, std::string_view what, std::string_view part = {}, std::string_view unit = {}) {
   if (!(x > 0.0) || !std::isfinite(x))
-    throw InvalidInput("value.not_positive",
-                       {ErrorObject{what}, part, " must be positive and finite, but is ", ErrorValue{x}, "."});
+    throw InvalidInput("value.not_positive", {ErrorObject{what}, part, " must be positive and finite, but is ",
+                                              ErrorValue{x}, unit.empty() ? "" : " ", unit, "."});
 }
 
-/// \throws InvalidInput unless `x` is finite and not negative.
-inline void require_not_negative(double x, std::string_view what, std::string_view part = {}) {
+/// \throws InvalidInput unless `x` is finite and not negative; `unit` is its unit.
+inline void require_not_negative(double x, std::string_view what, std::string_view part = {},
+                                 std::string_view unit = {}) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput("value.negative",
-                       {ErrorObject{what}, part, " must be zero or positive, and finite, but is ", ErrorValue{x}, "."});
+    throw InvalidInput("value.negative", {ErrorObject{what}, part, " must be zero or positive, and finite, but is ",
+                                          ErrorValue{x}, unit.empty() ? "" : " ", unit, "."});
 }
 
 /// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of counts.
@@ -97,21 +98,23 @@ inline void require_count(int n, std::string_view what, std::string_view part = 
                        {ErrorObject{what}, part, " must lie in [1, 1000000], but is ", ErrorValue{n}, "."});
 }
 
-/// \throws InvalidInput unless every entry of `x` is finite.
+/// \throws InvalidInput unless every entry of `x` is finite; `unit` is their unit.
 template <class Derived>
-void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, std::string_view part = {}) {
+void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, std::string_view part = {},
+                    std::string_view unit = {}) {
   typename Derived::PlainObject const& m = x.derived();  // evaluates an expression; loops compile fast
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
       if (!std::isfinite(m(i, j)))
-        throw InvalidInput("value.not_finite",
-                           {ErrorObject{what}, part, " must be finite, but has an entry ", ErrorValue{m(i, j)}, "."});
+        throw InvalidInput("value.not_finite", {ErrorObject{what}, part, " must be finite, but has an entry ",
+                                                ErrorValue{m(i, j)}, unit.empty() ? "" : " ", unit, "."});
 }
 
-/// \throws InvalidInput unless `x` is finite.
-inline void require_finite(double x, std::string_view what, std::string_view part = {}) {
+/// \throws InvalidInput unless `x` is finite; `unit` is its unit.
+inline void require_finite(double x, std::string_view what, std::string_view part = {}, std::string_view unit = {}) {
   if (!std::isfinite(x))
-    throw InvalidInput("value.not_finite", {ErrorObject{what}, part, " must be finite, but is ", ErrorValue{x}, "."});
+    throw InvalidInput("value.not_finite", {ErrorObject{what}, part, " must be finite, but is ", ErrorValue{x},
+                                            unit.empty() ? "" : " ", unit, "."});
 }
 
 /// Largest allowed magnitude of a number. Its square is finite, with a margin for energies and norms.

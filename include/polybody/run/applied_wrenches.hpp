@@ -3,6 +3,7 @@
 /// Wrenches of force elements in a state, contact points of contact groups, and powers of force elements and drives.
 /// Theory: Eq. 3.1.
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
@@ -118,8 +119,17 @@ void for_each_contact(System const& system, ElementHandle<F> const& group, Touch
     return system.data().markers[std::size_t(place.markers[std::size_t(k)])].frame;
   };
   if constexpr (ForceElement<F>) {
-    if (contact.may_touch(frame(0), frame(1)))
+    if (!contact.may_touch(frame(0), frame(1))) return;
+    if constexpr (HasStates<F>) {
+      std::array<double, F::states> z;
+      std::copy_n(system.data().states.begin() + (place.v0 - system.data().first_state), z.size(), z.begin());
+      auto const at_point = [&](auto const& p, Vec3 const& force, double n) {
+        if (n > 0.0) visit({0, &place.name, p.place, p.normal, p.depth, force});
+      };
+      contact.template for_each_touching<double>({frame(0), frame(1)}, z, at_point);
+    } else {
       detail::visit_touching(contact, {frame(0), frame(1)}, 0, place.name, visit);
+    }
   } else {
     for (Index body = 0; body < contact.many(); ++body)
       contact.for_each_partner([&](auto const& few) {

@@ -6,6 +6,7 @@
 /// Theory: Eqs. 11.5 to 11.7.
 
 #include <ostream>
+#include <utility>
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/state_checks.hpp>
@@ -27,17 +28,20 @@ Powers powers(System const& system, State const& x) {
   return powers(system, x, backwards);
 }
 
-/// Energy audit of a run, state by state. Powers are integrated by the trapezoidal rule; energies are exact:
+/// Energy audit of a run, state by state. Each power is integrated over a step by the parabola through its values in
+/// the last three states; energies are exact:
 ///   EnergyAudit audit(model);
 ///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
-/// The unaccounted energy is numerical: gains or losses of the integrator, and the error of the trapezoidal rule. The
-/// error of the rule is h²/12 times the increase of the time derivatives of the powers [Euler–Maclaurin formula]. Each
-/// jump of a power adds an error of about ½ h times the jump (loads at breakpoints, closing contacts with dampers). The
-/// multipliers of a state must belong to its time. This condition holds for the states of `simulate`, also with
-/// eliminated equations (JointCoordinates, AncfLinear), but not for states that are constructed by hand. The
-/// multipliers of `EnergyMomentum` and `EnergyDecaying` belong to the middle of the step, so that the work of drives
-/// has an error of O(h). `record` does not allocate memory. The model must outlive the audit and must not change after
-/// its construction.
+/// The unaccounted energy is numerical: gains or losses of the integrator, and the error of the rule. With equal steps
+/// and smooth powers, the error of the rule is h³/24 times the sum of the second derivatives of the powers at both ends
+/// of the run [Gregory's formula]. The trapezoidal rule replaces the parabola in the first step and in a step of more
+/// than twice the preceding one. A corner of a power within a step adds an error of at most h²/8 times the jump of its
+/// slope. A jump of a power adds an error of at most ½ h times the jump (closing contacts with dampers). Two
+/// breakpoints close before and after the jump make the error small. The multipliers of a state must belong to its
+/// time. This condition holds for the states of `simulate`, also with eliminated equations (JointCoordinates,
+/// AncfLinear), but not for states that are constructed by hand. The multipliers of `EnergyMomentum` and
+/// `EnergyDecaying` belong to the middle of the step, so that the work of drives has an error of O(h). `record` does
+/// not allocate memory. The model must outlive the audit and must not change after its construction.
 template <class = void>  // compiled only if used
 class EnergyAuditOf {
  public:
@@ -56,6 +60,7 @@ class EnergyAuditOf {
     see(x);
     first_ = last_;
     work_ = {};
+    last_step_ = 0.0;
     turnover_ = last_.kinetic;
     started_ = true;
   }
@@ -72,11 +77,11 @@ class EnergyAuditOf {
       throw InvalidInput("record.time_order",
                          {ErrorObject{"EnergyAudit"}, ": the state at t = ", ErrorTime{x.t},
                           " s is earlier than the last state at t = ", t_, " s. Call start() for another run."});
-    Powers const before = powers_;
+    Powers const earlier = std::exchange(before_, powers_);
     see(x);
-    work_.drives += 0.5 * h * (before.drives + powers_.drives);
-    work_.loads += 0.5 * h * (before.loads + powers_.loads);
-    work_.dissipated += 0.5 * h * (before.dissipated + powers_.dissipated);
+    for (double Powers::* const p : {&Powers::drives, &Powers::loads, &Powers::dissipated})
+      work_.*p += work_in_step(earlier.*p, before_.*p, powers_.*p, h);
+    last_step_ = h;
     double const in = std::abs(work_.drives) + std::abs(work_.loads) + std::abs(work_of_gravity());
     double const out = std::abs(kinetic()) + std::abs(stored()) + std::abs(work_.dissipated);
     turnover_ = std::max({turnover_, in, out, last_.kinetic});
@@ -112,11 +117,19 @@ class EnergyAuditOf {
     t_ = x.t;
   }
 
+  /// Integral of a power over the step h from its values in three states: of the parabola through them, or by the
+  /// trapezoidal rule.
+  double work_in_step(double earlier, double before, double now, double h) const {
+    double const g = last_step_, trapezoid = 0.5 * h * (before + now);
+    if (!(h > 0.0 && h <= 2.0 * g)) return trapezoid;
+    return trapezoid - h * h * h / (6.0 * (g + h)) * ((now - before) / h - (before - earlier) / g);
+  }
+
   System system_;
   VecX backwards_;
   Energy first_, last_;
-  Powers powers_, work_;  // work_: time integrals of powers [J]
-  double t_ = 0.0, turnover_ = 0.0;
+  Powers before_, powers_, work_;  // work_: time integrals of powers [J]
+  double t_ = 0.0, last_step_ = 0.0, turnover_ = 0.0;
   bool started_ = false;
 };
 

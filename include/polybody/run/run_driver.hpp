@@ -100,9 +100,11 @@ class RunDriver {
   }
   /// Takes a step of `run` of length h. If the step fails with `NewtonConvergenceFailure`, takes two steps of h/2 from
   /// a new start, each of which can be halved again. An integrator that controls its step takes only the first half.
-  /// After an exception x is unchanged. \param halvings largest number of halvings
+  /// A halving with a successful first half does not count: if a law jumps at the end of a step, the second halves
+  /// become so short that the jump moves the bodies by less than the round-off. After an exception x is unchanged.
+  /// \param halvings largest number of halvings that count \param depth number of halvings so far, at most 30
   template <class Run>
-  StepReport halving_step(State& x, double h, int halvings, Run& run);
+  StepReport halving_step(State& x, double h, int halvings, Run& run, int depth = 0);
 
   /// Stores step length, row of equal steps (`StepRow`) and signs of events in a snapshot. The run then continues like
   /// a resumed run.
@@ -204,12 +206,14 @@ class RunDriver {
 };
 
 template <class Run>
-StepReport RunDriver::halving_step(State& x, double h, int halvings, Run& run) {
+StepReport RunDriver::halving_step(State& x, double h, int halvings, Run& run, int depth) {
+  constexpr int deepest = 30;
+  int const allowed = options_->allowed_halvings();
   try {
-    return run.step(x, h, halvings);
+    return run.step(x, h, std::max(0, allowed - depth));
   } catch (NewtonConvergenceFailure& failure) {
-    if (halvings == 0) {
-      if (int const times = options_->allowed_halvings(); times > 0)
+    if (halvings == 0 || depth == deepest) {
+      if (int const times = depth == deepest ? depth : allowed; times > 0)
         failure.append(sentence_of({"The step of the run was halved ", times, times == 1 ? " time." : " times."}));
       throw;
     }
@@ -217,10 +221,10 @@ StepReport RunDriver::halving_step(State& x, double h, int halvings, Run& run) {
   State const before = x;
   try {
     run.start(x, 0.5 * h);
-    StepReport report = halving_step(x, 0.5 * h, halvings - 1, run);
+    StepReport report = halving_step(x, 0.5 * h, halvings - 1, run, depth + 1);
     ++report.halved;
     ++report.rejected;
-    if (!adaptive_) report.append(halving_step(x, h - report.taken, halvings - 1, run));
+    if (!adaptive_) report.append(halving_step(x, h - report.taken, halvings, run, depth + 1));
     return report;
   } catch (...) {
     x = before;

@@ -58,7 +58,8 @@ struct RunOptions {
   double assembly_tolerance = 1e-8;
   /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
   /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs and in fixed
-  /// steps of `work_precision`. If 0, a failed step ends the run. The report counts halved steps.
+  /// steps of `work_precision`. If 0, a failed step ends the run. A halving whose first half succeeds does not count; a
+  /// step is halved at most 30 times. The report counts halved steps.
   std::optional<int> max_step_halvings = {};
   bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state; costs one factorisation per step
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy

@@ -28,7 +28,7 @@ struct LinkGroundContact {
     if (pad.empty())
       throw InvalidInput("track_contact.points",
                          {ErrorObject{name}, ": the pad of a link needs at least one point. Set `pad`."});
-    for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad");
+    for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad", "m");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {
     Vec3 const up = detail::column<double>(ground.A, 2);

@@ -36,11 +36,11 @@ struct LinkRollerContact {
   std::vector<double> rims = {0.0};  ///< positions of the rims' middle planes along the axle [m]
 
   void check(std::string const& name) const {
-    require_positive(pitch, name, ": the pitch of the link");
-    require_not_negative(half_thickness, name, ": the link's half thickness");
-    require_positive(half_width, name, ": the link's half width");
-    require_positive(radius, name, ": the radius of the roller");
-    require_not_negative(chamfer, name, ": the chamfer of the link's edges");
+    require_positive(pitch, name, ": the pitch of the link", "m");
+    require_not_negative(half_thickness, name, ": the link's half thickness", "m");
+    require_positive(half_width, name, ": the link's half width", "m");
+    require_positive(radius, name, ": the radius of the roller", "m");
+    require_not_negative(chamfer, name, ": the chamfer of the link's edges", "m");
     if (!(chamfer < radius))
       throw InvalidInput("track_contact.chamfer",
                          {ErrorObject{name}, ": the chamfer must be smaller than the radius of the roller, ",
@@ -51,7 +51,7 @@ struct LinkRollerContact {
                           0.5 * pitch, " m, but is ", ErrorValue{handover}, " m."});
     if (rims.empty())
       throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim. Set `rims`."});
-    for (double const y : rims) require_finite(y, name, ": the position of a rim");
+    for (double const y : rims) require_finite(y, name, ": the position of a rim", "m");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     double const far = farthest_rim(), within = farthest(far);
@@ -149,9 +149,9 @@ struct GuideHornContact {
   Required<double> radius;  ///< radius of the rims [m]
 
   void check(std::string const& name) const {
-    require_finite(tip, name, ": the tip of the horn");
-    require_not_negative(play, name, ": the play of the horn");
-    require_positive(radius, name, ": the radius of the rims");
+    require_finite(tip, name, ": the tip of the horn", "m");
+    require_not_negative(play, name, ": the play of the horn", "m");
+    require_positive(radius, name, ": the radius of the rims", "m");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     Vec3 const arm = difference<double>(roller.r, link.r), axle = detail::column<double>(roller.A, 1);

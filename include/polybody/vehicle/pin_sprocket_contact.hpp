@@ -42,8 +42,8 @@ struct SprocketProfile {
     if (teeth < 4)
       throw InvalidInput("sprocket.teeth", {ErrorObject{name}, ": a sprocket needs at least four teeth, but has ",
                                             ErrorValue{int(teeth)}, "."});
-    require_positive(pitch, name, ": the pitch of the track");
-    require_positive(pin_radius, name, ": the pins' radius");
+    require_positive(pitch, name, ": the pitch of the track", "m");
+    require_positive(pin_radius, name, ": the pins' radius", "m");
     if (!(valley_radius > pin_radius) || !std::isfinite(valley_radius))
       throw InvalidInput("sprocket.valley",
                          {ErrorObject{name}, ": the radius of the valleys must exceed the radius of the pins, ",
@@ -111,12 +111,12 @@ struct PinSprocketContact {
   double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
   void check(std::string const& name) const {
     profile.check(name);
-    require_finite(valley, name, ": the angle of a valley");
-    require_finite(to_pin(), name, ": the position of the pin relative to its marker");
+    require_finite(valley, name, ": the angle of a valley", "rad");
+    require_finite(to_pin(), name, ": the position of the pin relative to its marker", "m");
     if (rings.empty())
       throw InvalidInput("sprocket.rings",
                          {ErrorObject{name}, ": a sprocket needs at least one ring of teeth. Set `rings`."});
-    for (double const y : rings) require_finite(y, name, ": the position of a ring");
+    for (double const y : rings) require_finite(y, name, ": the position of a ring", "m");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);

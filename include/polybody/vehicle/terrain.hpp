@@ -55,7 +55,7 @@ Height<T> follow(Relief const& h, T const& x, T const& y) {
 struct FlatGround {
   double z = 0.0;  ///< height of the plane [m]
 
-  void check(std::string const& name) const { require_finite(z, name, ": the height of the ground"); }
+  void check(std::string const& name) const { require_finite(z, name, ": the height of the ground", "m"); }
   double highest() const { return z; }  ///< height of the plane [m]
   /// Height h = z with zero slopes.
   template <StateScalar T>
@@ -70,8 +70,8 @@ struct Washboard {
   Required<double> wavelength;  ///< l, wavelength [m]
 
   void check(std::string const& name) const {
-    require_not_negative(amplitude, name, ": the amplitude");
-    require_positive(wavelength, name, ": the wavelength");
+    require_not_negative(amplitude, name, ": the amplitude", "m");
+    require_positive(wavelength, name, ": the wavelength", "m");
   }
   double highest() const { return amplitude; }  ///< amplitude of the waves [m]
   /// Height h = a sin(2πx/l) and its slope along x.
@@ -103,8 +103,8 @@ class BumpCourse {
     for (std::size_t i = 0; i < bumps_.size(); ++i) {
       Bump const& b = bumps_[i];
       std::string const bump = what + ": bump " + std::to_string(i + 1);
-      require_finite(Vec3(b.x, b.y, b.height), bump, ": its middle and height");
-      require_positive(b.length, bump, ": the length");
+      require_finite(Vec3(b.x, b.y, b.height), bump, ": its middle and height", "m");
+      require_positive(b.length, bump, ": the length", "m");
       if (!(b.width > 0.0))
         throw InvalidInput("terrain.bump",
                            {ErrorObject{bump}, ": the width must be positive, but is ", ErrorValue{b.width},
@@ -220,9 +220,9 @@ class HeightField {
   /// if x0, y0 or a height is not finite, or if a slope or curvature exceeds `largest_number`.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
-    require_finite(Vec2(grid.x0, grid.y0), what, ": the position x0, y0 of the first point");
-    require_positive(grid.dx, what, ": the spacing dx");
-    require_positive(grid.dy, what, ": the spacing dy");
+    require_finite(Vec2(grid.x0, grid.y0), what, ": the position x0, y0 of the first point", "m");
+    require_positive(grid.dx, what, ": the spacing dx", "m");
+    require_positive(grid.dy, what, ": the spacing dy", "m");
     if (z.rows() < 2 || z.cols() < 2)
       throw InvalidInput("terrain.grid",
                          {ErrorObject{what}, ": a grid needs at least two points along x and along y, but has ",

@@ -29,13 +29,13 @@ struct TyreRelaxation {
   double low_speed = 1.0;    ///< V₀ [m/s]
 
   void check(std::string const& name) const {
-    require_positive(longitudinal, name, ": the longitudinal relaxation length");
-    require_positive(lateral, name, ": the lateral relaxation length");
-    require_not_negative(damping_time, name, ": the damping time of the tyre");
+    require_positive(longitudinal, name, ": the longitudinal relaxation length", "m");
+    require_positive(lateral, name, ": the lateral relaxation length", "m");
+    require_not_negative(damping_time, name, ": the damping time of the tyre", "s");
     if (!(parked_slip > 0.0 && parked_slip <= 2.0))
       throw InvalidInput("tyre.parked_slip", {ErrorObject{name}, ": the parked slip must lie in (0, 2], but is ",
                                               ErrorValue{parked_slip}, "."});
-    require_positive(low_speed, name, ": the low speed of the tyre");
+    require_positive(low_speed, name, ": the low speed of the tyre", "m/s");
   }
   /// Rates u̇ [m/s] of the deflections `u` [m] along x and y, at the velocity `vx` of the wheel centre along x and the
   /// slip velocity (sx, sy) [m/s].
@@ -72,7 +72,7 @@ struct RollingResistance {
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of the rolling resistance");
-    if (coefficient > 0.0) require_positive(speed, name, ": the speed of the rolling resistance");
+    if (coefficient > 0.0) require_positive(speed, name, ": the speed of the rolling resistance", "m/s");
   }
 };
 
@@ -117,7 +117,7 @@ struct Wheel {
   G terrain = {};                  ///< height as a function of x and y of marker b
 
   void check(std::string const& name) const {
-    require_positive(radius, name, ": the radius of the wheel");
+    require_positive(radius, name, ": the radius of the wheel", "m");
     if (!(crown >= 0.0 && crown < radius))
       throw InvalidInput("wheel.crown",
                          {ErrorObject{name}, ": the crown must be at least zero and less than the radius ",

@@ -159,6 +159,17 @@ TEST(CapsuleOnSphere, PassesOnlyOnPathsThroughTheCapsule) {
   EXPECT_FALSE(passes({0.6, -0.3, 0}, {0.6, 0.3, 0}));
   EXPECT_FALSE(passes({0.2, -0.1, 0}, {0.2, 0.3, 0}));
 }
+// A sphere beside a capsule whose axis turns by 0.01 rad, across directions with two equal components.
+TEST(CapsuleOnSphere, DoesNotPassWhenTheAxisTurnsSlightly) {
+  CapsuleOnSphere const geometry{.radius = 0.1, .length = 1.0, .sphere = 0.1};
+  for (Vec3 const& beside : {Vec3(0, 0.3, 0), Vec3(0, -0.2, 0.2), Vec3(0, 0, -0.3)}) {
+    Frame<double> from[2] = {}, to[2] = {};
+    from[0].A = detail::axes_about<double>(Vec3(0.8, 0.425, 0.42).normalized());
+    to[0].A = detail::axes_about<double>(Vec3(0.8, 0.42, 0.425).normalized());
+    from[1].r = to[1].r = beside;
+    EXPECT_FALSE(geometry.passes(from, to)) << beside.transpose();
+  }
+}
 // Crossing axes: both points are at the crossing, x = 0.2 on a, and lose ½ κ (s − s_k)² = τ (s − s_k)²/(2 l)², where
 // l = 0.5 is the half length of a. Parallel axes: the points are at the ends of the common length.
 TEST(CapsuleOnCapsule, PointsMeetAtACrossingAndPartForParallelAxes) {

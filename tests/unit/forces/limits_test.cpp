@@ -119,6 +119,20 @@ TEST(Limit, ReboundsWithTheRestitutionOfItsDamping) {
   rebounds_with_its_restitution<Penalty>({.stiffness = 1e6, .damping = 1e3});
 }
 
+// The disc meets the limit at the end of a step, up to 1e-13 rad beyond it. This step has no solution, since the
+// damping force of a penetration moves the disc back. Halves of the step end at the same time; they become so short
+// that the force moves the disc by less than Newton's tolerance. The error is that of the times of contact and
+// departure.
+TEST(Limit, IsMetAtTheEndOfAStep) {
+  double const k = 1e3, e = 0.5, c = SpringDamperContact::with_restitution(k, 0.5, e).damping;
+  for (double const h : {1e-3, 1e-4})
+    for (double const beyond : {0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-8}) {
+      Disc<Constraint> disc({.upper = 0.1 - beyond, .stiffness = k, .damping = c});
+      simulate(disc.model, disc.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 0.2, .step = h}).run();
+      EXPECT_NEAR(joint_angle_rate(disc.model, disc.x, disc.pin), -2.0 * e, 4.0 * h * c) << h << ' ' << beyond;
+    }
+}
+
 // Without damping the disc penetrates by θ̇₀ √(J/k) and returns with −θ̇₀.
 TEST(Limit, StoresTheEnergyOfTheImpact) {
   Disc<Constraint> disc({.upper = 0.1, .stiffness = 1e3});
@@ -165,9 +179,12 @@ TEST(Backlash, RefusesWrongNumbers) {
 TEST(BumpStop, RefusesWrongNumbers) {
   auto const message = [](BumpStop const& stop) { return refusal([&] { on_translation(stop).check("\"stop\""); }); };
   EXPECT_TRUE(has(message({.stiffness = 1.0}), "the lower limit or the upper limit must be finite"));
-  EXPECT_TRUE(has(message({.upper = 0.1, .stiffness = -1.0}), "\"stop\": the contact stiffness must be positive"));
+  EXPECT_EQ(message({.upper = 0.1, .stiffness = -1.0}),
+            "\"stop\": the contact stiffness must be positive and finite, but is -1 N/m^n.");
   EXPECT_TRUE(has(message({.upper = 0.1, .stiffness = 1.0, .exponent = 0.5}), "the exponent"));
   EXPECT_TRUE(has(message({.upper = 0.1, .stiffness = 1.0, .damping = -1.0}), "the contact damping"));
+  EXPECT_EQ(refusal([] { on_angle(BumpStop{.upper = 0.1, .stiffness = 0.0}).check("\"stop\""); }),
+            "\"stop\": the contact stiffness must be positive and finite, but is 0 N m/rad^n.");
 }
 
 }  // namespace limits_test

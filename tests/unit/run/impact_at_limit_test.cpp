@@ -5,6 +5,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/spring_laws.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/planar/joints.hpp>
@@ -133,6 +134,57 @@ TEST(ImpactAtLimit, ComesToRestOnASlide) {
   EXPECT_NEAR(met.back().time, 3.0 * std::sqrt(2.0 / g), 1e-6);
   EXPECT_NEAR(joint_translation(model, x, slide), 2.0, 1e-9);
   EXPECT_NEAR(joint_translation_rate(model, x, slide), 0.0, 1e-9);
+}
+
+using String = OnDistance<LinearSpring>;  // a law without force
+String const no_force{{.stiffness = 0.0}};
+
+// Two free bodies on a string that becomes taut. With the line n, and the arm r of the point on body a, the impulse is
+// P = (1 + e) ẋ/(1/m_a + 1/m_b + |r × n|²/J_a), along the line only.
+TEST(ImpactAtLimit, OfADistanceHasTheImpulseOfTheClosedForm) {
+  double const ma = 2.0, mb = 3.0, ja = 0.05, e = 0.6;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<String>> model;
+  auto const a = model.add(Rigid<>(ma, Mat3(Mat3::Identity() * ja)), "a");
+  auto const b = model.add(Rigid<>(mb, Mat3(Mat3::Identity()), Placement::at({0.6, 0.9, 0.4})), "b");
+  Vec3 const arm(0, 0.1, 0.2), line = Vec3(0.6, 0.8, 0.2), n = line.normalized();
+  auto const string = model.apply(no_force, a.at(arm), b.at(Vec3(0, 0, 0)), "string");
+  Event const taut = impact_at_limit(model, string, {.upper = line.norm(), .restitution = e});
+  EXPECT_EQ(taut.name, "impact at a limit of \"string\"");
+  State x = model.reference_state();
+  Vec3 const va(0.1, -0.2, 0.3), wa(1, -2, 0.5), vb(1.5, 0.7, -0.4);
+  model.set_velocity(x, a, va, wa);
+  model.set_velocity(x, b, vb, Vec3::Zero());
+  double const rate = n.dot(vb - va - wa.cross(arm));
+  ASSERT_GT(rate, 0.5);
+  EXPECT_NEAR(taut.value(x), 0.0, 1e-15);
+  taut.action(x);
+  Vec3 const p = (1.0 + e) * rate / (1.0 / ma + 1.0 / mb + arm.cross(n).squaredNorm() / ja) * n;  // on a
+  Frame<double> const fa = frame(model, x, a.at(Vec3(0, 0, 0))), fb = frame(model, x, b.at(Vec3(0, 0, 0)));
+  EXPECT_LT((fa.v - va - p / ma).norm(), 1e-13);
+  EXPECT_LT((fa.w - wa - arm.cross(p) / ja).norm(), 1e-13);
+  EXPECT_LT((fb.v - vb + p / mb).norm(), 1e-13);
+  EXPECT_LT(fb.w.norm(), 1e-13);
+  EXPECT_NEAR(n.dot(fb.v - fa.v - fa.w.cross(arm)), -e * rate, 1e-13);
+  VecX const before = x.v;
+  taut.action(x);  // departs
+  EXPECT_EQ(x.v, before);
+}
+
+// A weight falls 0.8 m until its string of 1 m is taut, and bounces: impacts at √(2 h/g), rest at 3 times this time.
+TEST(ImpactAtLimit, OfADistanceComesToRest) {
+  Model<Bodies<Rigid<>>, Joints<>, Forces<String>> model{Gravity{0, 0, -g}};
+  auto const weight = model.add(Rigid<>(2.0, Mat3(Mat3::Identity()), Placement::at({0, 0, -0.2})), "weight");
+  auto const string = model.apply(no_force, model.ground().at({0, 0, 0}), weight.at(Vec3(0, 0, 0)), "string");
+  State x = model.reference_state();
+  Event const taut = impact_at_limit(model, string, {.upper = 1.0, .restitution = 0.5});
+  auto run = simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.6, .step = 1e-2, .events = {taut}});
+  run.run();
+  auto const& met = run.report().events;
+  EXPECT_NEAR(met.front().time, std::sqrt(1.6 / g), 1e-9);
+  EXPECT_NEAR(met.back().time, 3.0 * std::sqrt(1.6 / g), 1e-6);
+  EXPECT_NEAR(position(model, x, weight.at(Vec3(0, 0, 0)))[2], -1.0, 1e-9);
+  EXPECT_EQ(refusal([&] { (void)impact_at_limit(model, string, {.upper = 1.0, .restitution = -0.1}); }),
+            "\"string\": the coefficient of restitution must lie in [0, 1], but is -0.1.");
 }
 
 TEST(ImpactAtLimit, RefusesWrongNumbers) {

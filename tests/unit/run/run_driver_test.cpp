@@ -27,7 +27,7 @@ struct Fall {
   RunOptions options;
   RunReport report;
   RunDriver driver;
-  double longest = 1e9, part = 1.0, next_length = 0.0;
+  double longest = 1e9, part = 1.0, next_length = 0.0, fails_at = -1.0;
   int order = 0;  // number of steps so far
   int starts = 0, failing_step = -1, restarts = 0, failures = 0;
   std::vector<double> ends;
@@ -46,7 +46,8 @@ struct Fall {
   }
 
   StepReport step(State& y, double h, int = -1) {
-    if (h > longest) throw NewtonConvergenceFailure("newton.not_converged", {"no solution"});
+    if (h > longest || (std::abs(y.t + h - fails_at) < 1e-12 && h > 1e-6))
+      throw NewtonConvergenceFailure("newton.not_converged", {"no solution"});
     StepReport r;
     r.taken = part * h;
     r.next = next_length;
@@ -108,6 +109,17 @@ TEST(RunDriver, AFailedStepIsTakenInHalvesAfterNewStarts) {
   EXPECT_EQ(fall.report.last.order, 8);  // of the last half
   EXPECT_EQ(fall.report.last.choices, 8);
   EXPECT_NEAR(fall.x.q[1], 1.0 - 5.0 * 0.04, 1e-14);
+}
+
+// Steps that end at 0.2 s fail unless they are shorter than a millionth of a step. Only the last halves are halved
+// again: 17 halvings with the default of 6.
+TEST(RunDriver, HalvesBeforeAFailureAtTheEndOfAStepDoNotCount) {
+  Fall fall({.end_time = 0.3, .step = 0.1});
+  fall.fails_at = 0.2;
+  fall.run();
+  EXPECT_EQ(fall.ends.size(), 3u);
+  EXPECT_EQ(fall.report.halved, 17);  // 0.1 s · 2⁻¹⁷ < 1e-6 s
+  EXPECT_NEAR(fall.x.q[1], 1.0 - 5.0 * 0.09, 1e-13);
 }
 
 TEST(RunDriver, AStepThatFailsInAllHalvesLeavesTheStateUnchanged) {

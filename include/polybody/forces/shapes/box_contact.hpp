@@ -19,9 +19,9 @@ struct SphereOnBox {
   double rounding = 0.0;     ///< radius of the edges and corners of the box [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the sphere's radius");
+    require_not_negative(radius, name, ": the sphere's radius", "m");
     detail::require_box(size, rounding, name, ": the size of the box", ": the rounding of the box");
-    require_positive(radius + rounding, name, ": the sum of the sphere's radius and the rounding of the box");
+    require_positive(radius + rounding, name, ": the sum of the sphere's radius and the rounding of the box", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -67,11 +67,11 @@ struct CapsuleOnBox {
   Required<double> taper;                ///< loss of depth along the capsule [m]; small compared with the penetration
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the radius of the capsule");
-    require_not_negative(length, name, ": the length of the capsule");
+    require_not_negative(radius, name, ": the radius of the capsule", "m");
+    require_not_negative(length, name, ": the length of the capsule", "m");
     detail::require_box(size, rounding, name, ": the size of the box", ": the rounding of the box");
-    require_positive(radius + rounding, name, ": the sum of the capsule's radius and the rounding of the box");
-    require_positive(taper, name, ": the taper of the capsule");
+    require_positive(radius + rounding, name, ": the sum of the capsule's radius and the rounding of the box", "m");
+    require_positive(taper, name, ": the taper of the capsule", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -118,8 +118,8 @@ struct BoxOnBox {
   void check(std::string const& name) const {
     detail::require_box(size_a, rounding_a, name, ": the size of the first box", ": the rounding of the first box");
     detail::require_box(size_b, rounding_b, name, ": the size of the second box", ": the rounding of the second box");
-    require_positive(rounding_a + rounding_b, name, ": the sum of the roundings of the boxes");
-    require_positive(taper, name, ": the taper of the edges");
+    require_positive(rounding_a + rounding_b, name, ": the sum of the roundings of the boxes", "m");
+    require_positive(taper, name, ": the taper of the edges", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {

@@ -228,7 +228,7 @@ bool passes_through_box(Vec3 const& h, Vec3 const& x, Vec3 const& y, double roun
 template <class = void>
 void require_box(Vec3 const& size, double rounding, std::string const& name, char const* of_size,
                  char const* of_rounding) {
-  for (int i = 0; i < 3; ++i) require_positive(size[i], name, of_size);
+  for (int i = 0; i < 3; ++i) require_positive(size[i], name, of_size, "m");
   double const most = 0.5 * std::min({size[0], size[1], size[2]});
   if (!(rounding >= 0.0 && rounding <= most))
     throw InvalidInput("contact.rounding",

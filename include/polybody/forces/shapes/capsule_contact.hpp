@@ -17,10 +17,10 @@ struct CapsuleOnSphere {
   Required<double> sphere;  ///< radius of the sphere [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the radius of the capsule");
-    require_not_negative(length, name, ": the length of the capsule");
-    require_not_negative(sphere, name, ": the radius of the sphere");
-    require_positive(radius + sphere, name, ": the sum of the radii of capsule and sphere");
+    require_not_negative(radius, name, ": the radius of the capsule", "m");
+    require_not_negative(length, name, ": the length of the capsule", "m");
+    require_not_negative(sphere, name, ": the radius of the sphere", "m");
+    require_positive(radius + sphere, name, ": the sum of the radii of capsule and sphere", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -35,11 +35,14 @@ struct CapsuleOnSphere {
   /// and b. A depth of at most 5 % of the sum of the radii does not count.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
-    auto const place = [](Frame<double> const(&f)[2]) {
-      Vec3 const arm = f[1].r - f[0].r;
-      return detail::in_axes<double>(detail::axes_about<double>(detail::axis_of<double>(f[0].A, 0)), arm);
-    };
-    return detail::passes_through_box(core(), place(from), place(to), radius + sphere);
+    Mat3 const axes = detail::axes_about<double>(detail::axis_of<double>(from[0].A, 0));
+    Vec3 const x = detail::axis_of<double>(to[0].A, 0), y = axes.col(1),
+               z = x.cross(y);             // axes that turn with the axis
+    if (!(z.dot(z) > 0.01)) return false;  // turned by a quarter of a turn
+    Mat3 turned;
+    turned << x, z.cross(x).normalized(), z.normalized();
+    return detail::passes_through_box(core(), detail::in_axes<double>(axes, Vec3(from[1].r - from[0].r)),
+                                      detail::in_axes<double>(turned, Vec3(to[1].r - to[0].r)), radius + sphere);
   }
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const& a, Frame<T> const& b, Visit&& visit) const {
@@ -81,12 +84,12 @@ struct CapsuleOnCapsule {
   Required<double> taper;                ///< loss of depth along capsule a [m]; small compared with the penetration
 
   void check(std::string const& name) const {
-    require_not_negative(radius_a, name, ": the radius of the first capsule");
-    require_not_negative(length_a, name, ": the length of the first capsule");
-    require_not_negative(radius_b, name, ": the radius of the second capsule");
-    require_not_negative(length_b, name, ": the length of the second capsule");
-    require_positive(radius_a + radius_b, name, ": the sum of the radii of the capsules");
-    require_positive(taper, name, ": the taper of the capsules");
+    require_not_negative(radius_a, name, ": the radius of the first capsule", "m");
+    require_not_negative(length_a, name, ": the length of the first capsule", "m");
+    require_not_negative(radius_b, name, ": the radius of the second capsule", "m");
+    require_not_negative(length_b, name, ": the length of the second capsule", "m");
+    require_positive(radius_a + radius_b, name, ": the sum of the radii of the capsules", "m");
+    require_positive(taper, name, ": the taper of the capsules", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {

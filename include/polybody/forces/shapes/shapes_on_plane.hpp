@@ -70,8 +70,8 @@ struct CapsuleOnPlane {
   Required<double> length;               ///< distance of the centres of the two ends [m]
 
   void check(std::string const& name) const {
-    require_not_negative(radius, name, ": the radius of the capsule");
-    require_not_negative(length, name, ": the length of the capsule");
+    require_not_negative(radius, name, ": the radius of the capsule", "m");
+    require_not_negative(length, name, ": the length of the capsule", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {
@@ -105,8 +105,8 @@ struct PolyhedronOnPlane {
           "contact.corners",
           {ErrorObject{name}, ": the number of corners of the polyhedron must lie in [1, ", most, "], but is ",
            ErrorValue{int(corners.size())}, ". Set `corners`, or the template argument of PolyhedronOnPlane."});
-    for (Vec3 const& p : corners) require_finite(p, name, ": a corner of the polyhedron");
-    require_not_negative(rounding, name, ": the rounding of the polyhedron");
+    for (Vec3 const& p : corners) require_finite(p, name, ": a corner of the polyhedron", "m");
+    require_not_negative(rounding, name, ": the rounding of the polyhedron", "m");
   }
   template <class = void>  // compiled where it is used
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const {

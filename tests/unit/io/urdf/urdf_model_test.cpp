@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include <polybody/forces/loads.hpp>
+#include <polybody/forces/servo.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/accelerations.hpp>
 #include <polybody/run/initial_conditions.hpp>
@@ -213,6 +214,19 @@ TEST(UrdfModel, StopsPushAtTheLimits) {
 }
 
 // Losses of a slide along a horizontal axis: m v̇ = −d v − F v/√(v² + v₀²).
+TEST(UrdfModel, ServoHasTheLimitsOfItsJoint) {
+  auto const robot = read_urdf<Constraint>(folder + "six_axes.urdf", {.root = UrdfRoot::fixed});
+  Servo<> law{.target = {1.0}, .proportional_gain = 10.0, .derivative_gain = 1.0};
+  Servo<> const elbow = robot.servo("elbow", law);
+  EXPECT_EQ(elbow.most_force, 150.0);
+  EXPECT_EQ(elbow.most_speed, 3.1);
+  EXPECT_EQ(elbow.proportional_gain, 10.0);
+  law.most_force = 20.0;
+  EXPECT_EQ(robot.servo("elbow", law).most_force, 20.0);
+  EXPECT_TRUE(has(refusal([&] { (void)robot.servo("mount", law); }),
+                  "joint \"mount\": the joint has no element <limit> that bounds a servo."));
+}
+
 TEST(UrdfModel, DampingAndFrictionOpposeTheRate) {
   std::string const more = "<limit lower='-1' upper='1' effort='1' velocity='1'/><dynamics damping='5' friction='3'/>";
   UrdfOptions options = on_ground;
