@@ -1,8 +1,8 @@
-"""The programs of the pages in docs/guide, docs/items and docs/lessons, and their output.
+"""The programs of the pages in docs/guide, docs/howto, docs/items and docs/lessons, and their output.
 
   programs.py names PAGE...            folder/page:name of each, one per line. A program is the block after
                                        <!-- program: NAME -->; blocks after <!-- more: NAME --> continue it. A block has at most
-                                       60 lines, in docs/items 25
+                                       60 lines, in docs/howto 30, in docs/items 25
   programs.py write PAGE NAME FILE     writes one of them
   programs.py check PAGE NAME PROGRAM  runs it and compares its output with the block after <!-- output: NAME -->: words
                                        exactly, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
@@ -16,7 +16,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-MAX_LINES = {"guide": 60, "items": 25, "lessons": 60}  # of a block, by folder
+MAX_LINES = {"guide": 60, "items": 25, "lessons": 60, "howto": 30}  # of a block, by folder
 BLOCK = re.compile(r"<!-- (program|more|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
