@@ -13,7 +13,7 @@ int main() {
       .axial_stiffness = stiffness, .damping = 2e3, .length = length, .reeled = {.target = reeled, .duration = 2.0}};
   model.apply(Cable{winch}, model.ground().at({0, 0, 0}), load.centre(), "cable");
   State x = model.reference_state();
-  mechanism::Picture picture("Crane with a winch, moved along x with the time", 0, 1);
+  mechanism::Picture picture("Crane with a winch, at four times side by side", 0, 1);
   int step = 0;
   for (auto const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 8.0, .step = 2e-3}))
     if (step++ % 400 == 0 && now.t < 2.5)
