@@ -161,7 +161,7 @@ def header(name, text):
 # --- pages ------------------------------------------------------------------------------------
 def label(path):
     """docs/guide/contact.md -> guide_contact, docs/joints.md -> page_joints"""
-    return f"{path.parent.name if path.parent.name in ('guide', 'items', 'lessons', 'theory', 'site', 'validated') else 'page'}_{path.stem}"
+    return f"{path.parent.name if path.parent.name in ('guide', 'howto', 'items', 'lessons', 'theory', 'site', 'validated') else 'page'}_{path.stem}"
 
 
 def anchor(heading):

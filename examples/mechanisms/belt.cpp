@@ -32,6 +32,11 @@ int main() {
       circle.push_back(at[k] + radii[k] * Vec3(std::cos(i * 0.15708), std::sin(i * 0.15708), 0));
     picture.line(circle, int(k));
   }
+  double const across = (radii[0] - radii[1]) / at[1][0];  // normal of a span, along the line of centres
+  for (double const side : {1.0, -1.0}) {
+    Vec3 const normal(across, side * std::sqrt(1.0 - across * across), 0);
+    picture.line({at[0] + radii[0] * normal, at[1] + radii[1] * normal}, 2);
+  }
   picture.write("belt");
   auto const spans = belt_spans(model, x, spans_of);
   double const tight = std::max(spans[0].strain, spans[1].strain), slack = std::min(spans[0].strain, spans[1].strain);

@@ -39,7 +39,7 @@ int main() {
   model.set_velocity(x, ahead, Vec3(speed, 0, 0) - Vec3(0, speed / front, 0).cross(Vec3(base, 0, front)),
                      lean + Vec3(0, speed / front, 0));
   make_consistent(model, x);
-  Figure figure{.title = "Lean of the bicycle at 5 m/s", .x_label = "t [s]", .y_label = "[rad]", .legend = false};
+  Figure figure{.title = "Lean of the bicycle at 5 m/s", .x_label = "t [s]", .y_label = "lean [rad]", .legend = false};
   figure.curves.push_back({});
   double angle = 0.0;
   for (auto const& now : simulate(model, x, GeneralisedAlpha{.stabilised = true}, {.end_time = 15.0, .step = 5e-3})) {

@@ -24,7 +24,7 @@ int main() {
     std::vector<Vec3> outline;
     for (auto const& [u, w] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}})
       outline.push_back(now.position(box.at(Vec3(0.2 * u, 0, 0.1 * w))));
-    picture.line(outline, 0, now.t);
+    picture.line(outline, step / 500, now.t, 3);
   }
   picture.write("box_on_incline");
   double const known = 0.5 * 9.81 * (0.5 - friction * std::sqrt(0.75));

@@ -16,11 +16,12 @@ int main() {
   model.apply(PointForce<>{.force = {-1, 0, 0}}, strip.at(0.5), "force");  // 1 N
   State x = model.reference_state();
   BucklingModes const buckling = buckling_modes(model, x, {.count = 1});
-  mechanism::Picture picture("Buckling mode of a clamped strip", 0, 1);
+  mechanism::Picture picture("Clamped strip and its buckling mode, enlarged", 0, 1);
   State bent = x;
-  bent.q.head(buckling.shape.rows()) += 0.05 / buckling.shape.col(0).cwiseAbs().maxCoeff() * buckling.shape.col(0);
+  bent.q.head(buckling.shape.rows()) += 0.3 / buckling.shape.col(0).cwiseAbs().maxCoeff() * buckling.shape.col(0);
   std::vector<Vec3> shape;
   for (int i = 0; i <= 40; ++i) shape.push_back(position(model, bent, strip.at(0.5 * i / 40)));
+  picture.line({Vec3(0, 0, 0), Vec3(0.5, 0, 0)}, 1);
   picture.line(shape, 0);
   picture.write("buckling_strip");
   double const known = std::pow(std::acos(-1.0) / (2.0 * 0.5), 2) * constants(bar).EI;  // π² EI/(2 l)²

@@ -13,11 +13,11 @@ int main() {
       .axial_stiffness = stiffness, .damping = 2e3, .length = length, .reeled = {.target = reeled, .duration = 2.0}};
   model.apply(Cable{winch}, model.ground().at({0, 0, 0}), load.centre(), "cable");
   State x = model.reference_state();
-  mechanism::Picture picture("Crane with a winch", 0, 1);
+  mechanism::Picture picture("Crane with a winch, at four times side by side", 0, 1);
   int step = 0;
   for (auto const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 8.0, .step = 2e-3}))
     if (step++ % 400 == 0 && now.t < 2.5)
-      picture.line({Vec3(0.3 * now.t, 0, 0), now.position(load.centre()) + Vec3(0.3 * now.t, 0, 0)}, 0, now.t);
+      picture.line({Vec3(now.t, 0, 0), now.position(load.centre()) + Vec3(now.t, 0, 0)}, 0, now.t);
   picture.write("crane");
   double const left = length - reeled, known = left * (1.0 + mass * 9.81 / stiffness);
   return mechanism::compare("depth of the load [m]", -position(model, x, load.centre())[1], known, 1e-4);

@@ -22,7 +22,8 @@ int main() {
   model.apply(gears, std::tuple(carrier.centre(), left.centre(), right.centre()), "differential");
 
   State x = model.reference_state();
-  Figure figure{.title = "Speed of the right wheel", .x_label = "t [s]", .y_label = "[rad/s]", .legend = false};
+  Figure figure{
+      .title = "Speed of the right wheel", .x_label = "t [s]", .y_label = "angular velocity [rad/s]", .legend = false};
   figure.curves.push_back({});
   for (auto const& now : simulate(model, x, Radau{}, {.end_time = 2.0, .step = 5e-3}))
     figure.curves[0].x.push_back(now.t), figure.curves[0].y.push_back(now.joint_angle_rate(wheel));

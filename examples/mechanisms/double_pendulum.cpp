@@ -24,7 +24,7 @@ int main() {
       double const scale = 1e3;
       Vec3 a = now.position(upper.centre()), b = now.position(lower.centre());
       a[0] *= scale, b[0] *= scale;
-      picture.line({Vec3(0, 0, 0), a, b}, 0, now.t);
+      picture.line({Vec3(0, 0, 0), a, b}, 0, now.t, 2);
     }
     before = at;
     t = now.t;

@@ -12,8 +12,11 @@ int main() {
   double const spin = 6.0, off = 1e-3;
   model.set_velocity(x, nut, {0, 0, 0}, {off, spin, 0});
 
-  Figure figure{
-      .title = "Angular velocity about the middle axis", .x_label = "t [s]", .y_label = "[rad/s]", .legend = false};
+  Figure figure{.title = "Angular velocity about the middle axis",
+                .x_label = "t [s]",
+                .y_label = "angular velocity [rad/s]",
+                .legend = false};
+  figure.y_range = {-7.0, 7.0};
   figure.curves.push_back({});
   double before = spin, t = 0.0, first = 0.0, second = 0.0;
   for (auto const& now : simulate(model, x, Radau{}, {.end_time = 16.0, .step = 0.01})) {

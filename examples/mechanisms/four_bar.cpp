@@ -30,7 +30,7 @@ int main() {
   for (auto const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3})) {
     least = std::min(least, now.joint_angle(pivot));
     most = std::max(most, now.joint_angle(pivot));
-    if (step++ % 125 == 0)
+    if (step++ % 125 == 0 && now.t < 0.99)
       picture.line({Vec3(0, 0, 0), now.position(crank.at(0.3)), now.position(rocker.at(0.7)), Vec3(1, 0, 0)}, 0, now.t);
   }
   picture.write("four_bar");

@@ -21,14 +21,15 @@ int main() {
   State x = model.reference_state();
   double const speed = 0.5;  // at the lowest point
   model.set_velocity(x, balls[0], {speed, 0, 0}, {0, 0, speed / length});
-  Figure figure{.title = "Speeds of the five balls", .x_label = "t [s]", .y_label = "[m/s]", .legend = false};
-  for (int i = 0; i < 5; ++i) figure.curves.push_back({.width = 2.5});
+  Figure figure{.title = "Speeds of the five balls", .x_label = "t [s]", .y_label = "speed [m/s]"};
+  figure.y_range = {-0.05, 0.55};
+  for (int i = 0; i < 5; ++i) figure.curves.push_back({.label = "ball " + std::to_string(i + 1), .width = 2.5});
   double most = 0.0;
   int step = 0;
   for (auto const& now :
        simulate(model, x, DormandPrince<Projection>{}, {.end_time = 0.006, .step = 1e-6, .max_step = 1e-5})) {
     most = std::max(most, now.position(balls[4].centre())[0] > 0.162 ? now.frame(balls[4].centre()).v.norm() : 0.0);
-    if (step++ % 4 != 0) continue;
+    if (step++ % 4 != 0 || now.t > 2e-3) continue;
     for (std::size_t i = 0; i < 5; ++i)
       figure.curves[i].x.push_back(now.t), figure.curves[i].y.push_back(now.frame(balls[i].centre()).v[0]);
   }

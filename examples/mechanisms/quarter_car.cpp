@@ -24,7 +24,7 @@ int main() {
   State x = model.reference_state();
   Modes const found = modes(model, x, 2);
   model.set_velocity(x, body, {0, -1.0, 0}, {0, 0, 0});
-  Figure figure{.title = "Distance of body and wheel", .x_label = "t [s]", .y_label = "[m]", .legend = false};
+  Figure figure{.title = "Distance of body and wheel", .x_label = "t [s]", .y_label = "distance [m]", .legend = false};
   figure.curves.push_back({});
   for (auto const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 1e-3}))
     figure.curves[0].x.push_back(now.t),

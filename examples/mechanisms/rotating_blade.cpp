@@ -15,11 +15,12 @@ int main() {
                     .EA = 1e8, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-8}};
   Figure figure{.title = "First flapwise frequency",
                 .x_label = "speed of rotation [rad/s]",
-                .y_label = "[rad/s]",
+                .y_label = "frequency [rad/s]",
                 .legend = false};
   figure.curves.push_back({.width = 2.5});
   double last = 0.0;
-  for (double const speed : {0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
+  for (int k = 1; k <= 12; ++k) {
+    double const speed = 0.5 * k;
     Model<Bodies<Rigid<>, Blade>, Joints<Pin, Drive, Root>> model;
     auto const ground = model.ground().at({0, 0, 0});
     auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub");

@@ -13,6 +13,7 @@ namespace car_test {
 
 constexpr double g = 9.81, radius = 0.32, stiffness = 2e5;
 
+// --- code with parts
 LinearTyre const grip{
     .longitudinal_stiffness = 6e4, .cornering_stiffness = 4e4, .longitudinal_friction = 1.0, .lateral_friction = 0.9};
 TyreRelaxation const relaxation{.longitudinal = 0.2, .lateral = 0.3, .damping_time = 5e-3};
@@ -25,7 +26,9 @@ Part part() {
           .tyre = grip,
           .relaxation = relaxation};
 }
+// --- end
 /// Tyre force of this wheel on the plane z = 0, written by hand.
+// --- code by hand
 auto by_hand() {
   auto const tyre = [](auto const& frames, auto const& u) {
     using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
@@ -88,6 +91,7 @@ auto by_hand() {
   };
   return user_force<2, 2>(wrenches, rates);
 }
+// --- end
 using ByHand = decltype(by_hand());
 
 using Strut = Joint<Cylindrical, Constraint>;
@@ -95,6 +99,7 @@ using Steer = Joint<PrescribedAngle<SmoothRamp>, Constraint>;
 using Axle = Joint<Revolute, Constraint>;
 
 /// Chassis of 1200 kg on four struts. A hub slides and steers on each strut, and carries a wheel.
+// --- code of both
 template <class Tyre>
 struct Car {
   double const a = 1.2, b = 1.5, half = 0.75, chassis_mass = 1200.0, hub_mass = 20.0, wheel_mass = 15.0;
@@ -138,6 +143,7 @@ struct Car {
   }
   Frame<double> of(State const& s) const { return frame(model, s, chassis.at({0, 0, 0})); }
 };
+// --- end
 
 char const* const setting = "Rigid, Wheel<LinearTyre>, h = 2e-3 s";
 

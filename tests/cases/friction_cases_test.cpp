@@ -8,6 +8,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/loads.hpp>
+#include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
@@ -117,25 +118,45 @@ TEST(SlidingBlock, WithABristleStopsAsByCoulombsLaw) {
 
 // --- X10: box launched along a floor --------------------------------------------------------------------------
 
-/// Cube of 0.1 m and 1 kg on four feet, launched at 6 m/s.
+// The contact of a foot by a lambda of the user.
+// --- code by hand
+auto foot_by_hand(double mu) {
+  return user_force<2>([mu]<class T>(std::array<Frame<T>, 2> const& f, double) {
+    using std::sqrt;
+    Vec<T, 3> const arm(T(0.0), T(0.0), T(-0.005)), v = f[0].v + f[0].w.cross(arm);
+    T const depth = 0.005 - f[0].r[2];
+    T load = depth * 1e5 - v[2] * 30.0;
+    if (value_of(depth) < 0.0 || value_of(load) < 0.0) load = T(0.0);
+    T const drag = load * mu / sqrt(T(v[0] * v[0] + v[1] * v[1] + 1e-6));
+    std::array<Wrench<T>, 2> w;
+    w[0].f = Vec<T, 3>(-drag * v[0], -drag * v[1], load);
+    w[0].m = arm.cross(w[0].f);
+    w[1].f = -w[0].f;
+    w[1].m = -Vec<T, 3>(f[0].r + arm - f[1].r).cross(w[0].f);
+    return w;
+  });
+}
+// --- end
+/// The same contact by parts.
+// --- code with parts
 template <class F>
+OnPlane<F> foot(F const& friction) {
+  return {{.radius = 0.005}, {.stiffness = 1e5, .damping = 30.0}, friction};
+}
+// --- end
+
+/// Cube of 0.1 m and 1 kg on four feet, launched at 6 m/s.
+template <class Foot>
 struct Box {
-  Model<Bodies<Rigid<>>, Joints<>, Forces<OnPlane<F>>> model{Gravity{0, 0, -g}};
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Foot>> model{Gravity{0, 0, -g}};
   BodyHandle<Rigid<>> box =
       model.add(Rigid<>(1.0, Mat3(Mat3::Identity() * 0.01 / 6.0), Placement::at({0, 0, 0.05 - 0.25 * g / 1e5})));
-  std::vector<ElementHandle<OnPlane<F>>> feet;
+  std::vector<ElementHandle<Foot>> feet;
 
-  explicit Box(F const& friction) {
+  explicit Box(Foot const& foot) {
     for (double const x : {-0.045, 0.045})
       for (double const y : {-0.045, 0.045})
-        feet.push_back(model.apply(OnPlane<F>{{.radius = 0.005}, {.stiffness = 1e5, .damping = 30.0}, friction},
-                                   box.at(Vec3(x, y, -0.045)), model.ground().at({0, 0, 0})));
-  }
-  static F friction(double mu) {
-    if constexpr (std::is_same_v<F, Friction>)
-      return {.coefficient = mu, .slip_speed = 1e-3};
-    else
-      return {.coefficient = mu, .stiffness = 1e5, .damping = 30.0};
+        feet.push_back(model.apply(foot, box.at(Vec3(x, y, -0.045)), model.ground().at({0, 0, 0})));
   }
   State start() const {
     State x = model.reference_state();
@@ -145,11 +166,12 @@ struct Box {
   /// Inclination of the box, sin of the angle between its axis and the vertical.
   double tilt(State const& x) const { return std::abs(frame(model, x, box.at(Vec3(0, 0, 0))).A(2, 0)); }
 };
-template <class F>
-void expect_box_slides() {
-  std::string const by = std::string(name_of<F>) + ", generalised-α, h = 2e-4 s";
+/// \param foot contact of a foot for a coefficient of friction
+template <class MakeFoot>
+void expect_box_slides(std::string const& friction, MakeFoot const& foot) {
+  std::string const by = friction + ", generalised-α, h = 2e-4 s";
   auto const box = [&](char const* what, char const* source) { return closed_form("X10", what, source, by); };
-  Box<F> const launched(Box<F>::friction(0.5));
+  Box const launched(foot(0.5));
   State x = launched.start();
   double stopped = 0.0, least = 1.0;
   for (State const& now : simulate(launched.model, x, GeneralisedAlpha{}, {.end_time = 1.5, .step = 2e-4})) {
@@ -167,7 +189,7 @@ void expect_box_slides() {
   held(box("time to the stop [s]", "v/(μg)"), stopped, 1.2232416, 0.003 * 1.2232416);
   held(box("way to the stop [m]", "v²/(2μg)"), x.q[0], 3.6697248, 0.003 * 3.6697248);
   for (double const mu : {0.85, 0.95}) {  // it tips if μ > 0.9
-    Box<F> const other(Box<F>::friction(mu));
+    Box const other(foot(mu));
     State y = other.start();
     double most = 0.0;
     for (State const& now : simulate(other.model, y, GeneralisedAlpha{}, {.end_time = 0.7, .step = 2e-4})) {
@@ -178,8 +200,19 @@ void expect_box_slides() {
   }
 }
 TEST(LaunchedBox, SlidesOnItsFeetAndTipsOverAboveTheLimit) {
-  expect_box_slides<Friction>();
-  expect_box_slides<BristleFriction>();
+  auto const slip = [](double mu) { return foot(Friction{.coefficient = mu, .slip_speed = 1e-3}); };
+  expect_box_slides("regularised friction", slip);
+  expect_box_slides("BristleFriction", [](double mu) {
+    return foot(BristleFriction{.coefficient = mu, .stiffness = 1e5, .damping = 30.0});
+  });
+  Box const parts(slip(0.5));
+  Box const by_hand(foot_by_hand(0.5));
+  auto const way = [](auto const& box) {
+    State x = box.start();
+    simulate(box.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 2e-4}).run();
+    return x.q[0];
+  };
+  EXPECT_NEAR(way(parts), way(by_hand), 1e-9);
 }
 
 // --- X11: spin at the first bounce ----------------------------------------------------------------------------

@@ -23,12 +23,15 @@ namespace polybody {
 namespace servo_on_a_stop_test {
 
 /// Angular speed of 1 rad/s before 2 s and of −1 rad/s afterwards: the target of the servo.
+// --- code with parts
 auto reversed() {
   return [](double t) -> Motion { return {2.0 - std::abs(t - 2.0), t < 2.0 ? 1.0 : -1.0, 0.0}; };
 }
 using SpeedServo = OnAngle<Servo<decltype(reversed())>>;
+// --- end
 
-// Servo and stop by lambdas of the user, as in the guide. --- lambdas
+// Servo and stop by lambdas of the user.
+// --- code by hand
 template <class T>
 std::array<Wrench<T>, 2> about(Vec<T, 3> const& axis, T const& moment) {
   std::array<Wrench<T>, 2> w;
@@ -56,7 +59,8 @@ auto stop() {
     if (value_of(angle) < 0.5 || value_of(moment) < 0.0) moment = T(0.0);
     return about<T>(axis, -moment);
   });
-}  // --- end of lambdas
+}
+// --- end
 
 /// Arm of 1.5 kg on a hinge about −y, which hangs at zero, with its centre of mass at 0.5 m and J = 0.5 kg m² about
 /// the hinge: 0.125 kg m² about the centre. Servo and stop are parts of the library or lambdas.
@@ -81,15 +85,19 @@ struct Arm {
       : hinge(model.connect(Pin{Revolute{.axis = Vec3(0, -1, 0)}, policy}, model.ground().at({0, 0, 0}),
                             arm.at(Vec3(0, 0.5, 0)), "hinge")) {
     if constexpr (parts) {
+      // --- code with parts
       model.apply(
           SpeedServo{{.target = reversed(), .proportional_gain = 0.0, .derivative_gain = 40.0, .most_force = 20.0}},
           hinge, "servo");
       end = model.apply(JointLimit{{.upper = 0.5, .stiffness = 1e4, .damping = 50.0}}, hinge, "stop");
+      // --- end
     } else {
+      // --- code by hand
       auto const on_ground = model.ground().at(Placement{Vec3::Zero(), axes_of_arm});
       auto const on_arm = arm.at(Vec3(0, 0.5, 0));
       model.apply(servo(), on_ground, on_arm, "servo");
       end = model.apply(stop(), on_ground, on_arm, "stop");
+      // --- end
     }
   }
 };

@@ -1,12 +1,15 @@
-"""The programs of the pages in docs/guide, docs/items and docs/lessons, and their output.
+"""The programs of the pages in docs/guide, docs/howto, docs/items and docs/lessons, and their output.
 
   programs.py names PAGE...            folder/page:name of each, one per line. A program is the block after
                                        <!-- program: NAME -->; blocks after <!-- more: NAME --> continue it. A block has at most
-                                       60 lines, in docs/items 25
+                                       60 lines, in docs/howto 30, in docs/items 25
   programs.py write PAGE NAME FILE     writes one of them
   programs.py check PAGE NAME PROGRAM  runs it and compares its output with the block after <!-- output: NAME -->: words
                                        exactly, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
   programs.py self                     tests of `check`: differences that it reports and accepts
+  programs.py lines PAGE TESTS         compares counts of the page, such as 32<!--lines: car_test, by hand + of both-->, with the
+                                       numbers of lines in TESTS/car_test.cpp between "// --- code by hand" or "// --- code
+                                       of both" and "// --- end", without comments and blank lines
   programs.py errors PAGE INCLUDE      checks that the page's table has exactly the exceptions that the headers under INCLUDE
                                        declare, each with its cause and remedy
 
@@ -16,7 +19,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-MAX_LINES = {"guide": 60, "items": 25, "lessons": 60}  # of a block, by folder
+MAX_LINES = {"guide": 60, "items": 25, "lessons": 60, "howto": 30}  # of a block, by folder
 BLOCK = re.compile(r"<!-- (program|more|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
@@ -75,6 +78,9 @@ def check_self():
     for shown, printed in fails:
         if not difference(shown, printed):
             sys.exit(f"not found: {shown!r}, {printed!r}")
+    code = "// --- code by hand\na\n\n// b\n  // --- end\nc\n// --- code of both\nd\n// --- end\n// --- code by hand\ne\nf\n// --- end\n"
+    if lines_of_code(code) != {"by hand": 3, "of both": 1}:
+        sys.exit(f"lines: {lines_of_code(code)}")
 
 
 def check_errors(page, include):
@@ -95,6 +101,29 @@ def check_errors(page, include):
             sys.exit(f"{page}: {name} has no cause or no remedy.")
 
 
+COUNT = re.compile(r"(\d+)<!--lines: (\w+), ([\w +]+)-->")
+REGION = re.compile(r"^ *// --- code ([\w ]+)\n(.*?)^ *// --- end$", re.M | re.S)
+
+
+def lines_of_code(text):
+    """Lines of each kind of marked code: {"by hand": 32}."""
+    found = {}
+    for kind, code in REGION.findall(text):
+        found[kind] = found.get(kind, 0) + sum(1 for line in code.splitlines() if line.strip() and not line.lstrip().startswith("//"))
+    return found
+
+
+def check_lines(page, tests):
+    counts = COUNT.findall(Path(page).read_text(encoding="utf-8"))
+    if not counts:
+        sys.exit(f"{page}: no count of lines.")
+    for count, name, kinds in counts:
+        found = lines_of_code((Path(tests) / f"{name}.cpp").read_text(encoding="utf-8"))
+        lines = sum(found[kind] for kind in kinds.split(" + "))
+        if lines != int(count):
+            sys.exit(f"{page}: {count} lines of {name}, {kinds}, but there are {lines}.")
+
+
 def main(command, *arguments):
     if command == "names":
         for page in arguments:
@@ -113,6 +142,9 @@ def main(command, *arguments):
             sys.exit(f"{page}, {name}, {wrong}\nwhole output:\n{ran.stdout}")
     elif command == "self":
         check_self()
+    elif command == "lines":
+        page, tests = arguments
+        check_lines(page, tests)
     elif command == "errors":
         page, include = arguments
         check_errors(page, include)
