@@ -1,9 +1,9 @@
 // title: Periods of a rigid floater
 // thread: https://github.com/OpenFAST/openfast/issues/2704
-// words: floating wind turbine, natural period, linearization, eigenanalysis, surge, pitch, heave, hydrostatic
-//     stiffness wanted: A rigid body on a stiffness matrix is linearised. Its eigenfrequencies were wrong. inputs:
-//     1.6e7 kg, centre 12 m below the origin, inertia 9e9, 9e9 and 1.2e10 kg m² about the centre. Stiffness at the
-//     origin, with the part of gravity: 7e4, 7e4 and 4e6 N/m, 1.5e9, 1.5e9 and 1.1e8 N m/rad.
+// words: floating wind turbine, natural period, linearization, eigenanalysis, surge, pitch, heave, hydrostatics
+// wanted: A rigid body on a stiffness matrix is linearised. Its eigenfrequencies were wrong.
+// inputs: 1.6e7 kg, centre 12 m below the origin, inertia 9e9, 9e9 and 1.2e10 kg m² about the centre. Stiffness at
+//     the origin, with the part of gravity: 7e4, 7e4 and 4e6 N/m, 1.5e9, 1.5e9 and 1.1e8 N m/rad.
 // right: Heave 2π √(m/k) and yaw 2π √(J/k). Surge u of the origin and pitch ϑ are coupled by the centre at u − d
 //     ϑ: the roots of ω⁴ m J − ω² (m k_ϑ + k_u (J + m d²)) + k_u k_ϑ = 0 give two periods, which sway and roll
 //     have too.
