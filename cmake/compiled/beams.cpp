@@ -12,7 +12,7 @@ template AncfCable<EngineeringStrain>::AncfCable(Bar const&, BarConstants const&
 template struct BodyKernels<AncfBeam<Continuum<>>, double>;
 template AncfBeam<Continuum<>>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 template struct BodyKernels<Lrvf<>, double>;
-template Lrvf<>::Lrvf(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
+template Lrvf<>::Lrvf(Bar const&, detail::ChainSections const&, Index, ReferenceCurve const&);
 template detail::LinearPointOf<double> detail::linear_point<AncfBeam<>, double>(AncfBeam<> const&,
                                                                                 AncfBeam<>::Point const&);
 template detail::LinearPointOf<double> detail::linear_point<AncfCable<>, double>(AncfCable<> const&,

@@ -36,7 +36,7 @@ extern template AncfCable<EngineeringStrain>::AncfCable(Bar const&, BarConstants
 extern template struct BodyKernels<AncfBeam<Continuum<>>, double>;
 extern template AncfBeam<Continuum<>>::AncfBeam(Bar const&, Index, ReferenceCurve const&, bool);
 extern template struct BodyKernels<Lrvf<>, double>;
-extern template Lrvf<>::Lrvf(Bar const&, BarConstants const&, Index, ReferenceCurve const&);
+extern template Lrvf<>::Lrvf(Bar const&, detail::ChainSections const&, Index, ReferenceCurve const&);
 extern template struct JointKernels<Joint<Revolute, Constraint>, double>;
 extern template struct JointKernels<Joint<Revolute, Bushing>, double>;
 extern template struct JointKernels<Joint<Revolute, AncfLinear>, double>;
