@@ -299,7 +299,7 @@ template <class T>
 bool TreeTangentSolverOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
   int const count = walk_.directions[first].together;
   n.pair.turn_back(columns_[first].rate);  // [A B′] from here on
-  T d[9], size[3] = {};
+  T d[9] = {}, size[3] = {};
   for (int j = 0; j < count; ++j) {
     Column& c = columns_[first + std::size_t(j)];
     T const* const s = walk_.directions[first + std::size_t(j)].s;
