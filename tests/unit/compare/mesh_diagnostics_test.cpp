@@ -123,7 +123,8 @@ TEST(SpatialMeshDiagnostics, AHelixHasItsCurvatureAndItsChords) {
   for (double c : d.rotation_curvature) EXPECT_NEAR(c, kappa, 1e-13);
 }
 
-// The axis of a beam on SE(3) is this helix, in the plane a circle: length and curvature are those of the curve.
+// The axis of a beam on SE(3) is this helix, in the plane a circle: length and curvature are those of the curve. The
+// five Gauss points of the implied curve have errors of (5!)⁴ (w l)¹¹/(11 (10!)³) ≈ 3e-13 in an element.
 TEST(SpatialMeshDiagnostics, ElementsOfASe3BeamAreHelicesAndArcs) {
   Bar const bar{.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}};
   Vec3 const phi(0.6, -0.5, 1.2);
@@ -133,7 +134,7 @@ TEST(SpatialMeshDiagnostics, ElementsOfASe3BeamAreHelicesAndArcs) {
   });
   SpatialMeshDiagnostics const d = mesh_diagnostics(Se3Beam::from(bar, 3), numbers(q));
   EXPECT_NEAR(d.position_length, 2.2, 1e-13);
-  EXPECT_NEAR(d.largest_gap, 0.1 * 2.0 * (left_jacobian<double>(2.0 * phi).col(0)).norm(), 1e-13);
+  EXPECT_NEAR(d.largest_gap, 0.1 * 2.0 * (left_jacobian<double>(2.0 * phi).col(0)).norm(), 1e-12);
   for (double c : d.position_curvature) EXPECT_NEAR(c, 1.3 / 1.1, 1e-13);
   for (double c : d.rotation_curvature) EXPECT_NEAR(c, 1.3, 1e-13);
   double const k = 0.7;
