@@ -1,5 +1,8 @@
 #include "vehicle_film.hpp"
 
+#include <map>
+#include <string_view>
+
 namespace chapter3 {
 
 namespace {
@@ -10,6 +13,31 @@ constexpr double same_time = 1e-9;          // [s]
 void add_point(FilmScene& scene, std::string const& output, double t, double number) {
   std::size_t const unit = output.find(" [");
   scene.plot(output.substr(0, unit), output.substr(unit + 2, output.size() - unit - 3), t, number);
+}
+
+// Adds an arrow for each link and partner: the sum of the forces at their contact points, at the mean of these points
+// weighted by force. One contact point of a cable represents two of a rigid link, so only these sums can be compared.
+void add_sums_of_contacts(FilmScene& scene, FilmArrows arrows, m113::Track const& track, System const& system) {
+  struct Sum {
+    Vec3 force = Vec3::Zero(), place = Vec3::Zero();
+    double weight = 0.0;
+  };
+  std::map<std::pair<Index, std::string_view>, Sum> sums;
+  track.contacts(system, [&](TouchingPoint const& p) {
+    Sum& sum = sums[{p.body, *p.against}];
+    sum.force += p.force;
+    sum.place += p.force.norm() * p.place;
+    sum.weight += p.force.norm();
+  });
+  for (auto const& [pair, sum] : sums)
+    if (sum.weight > 0.0) scene.arrow(arrows, sum.place / sum.weight, sum.force / 1e3);
+}
+
+// Name of a scene for a run of the comparison of pins; other names are unchanged.
+std::string title_of(std::string const& run) {
+  for (std::string_view const policy : {"constraint", "penalty", "bushing", "joint-coordinates"})
+    if (run.starts_with(policy)) return "rigid links, pins by " + run;
+  return run == "ancf" ? "flexible links: ANCF cables" : run;
 }
 }  // namespace
 
@@ -23,9 +51,9 @@ std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& ti
 }
 
 VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints)
-    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)), until_(end_time) {
+    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(title_of(name))), until_(end_time) {
   scene_.colour(axial_stress_colours());
-  contacts_ = scene_.arrows("contact forces on links", "kN");
+  contacts_ = scene_.arrows("contact forces on links, sums for each partner", "kN");
   if (joints) joints_ = scene_.arrows("forces of joints", "kN", false);
 }
 
@@ -70,7 +98,7 @@ void VehicleScene::show_kept(Probe& probe, std::function<void(std::size_t k, std
 void VehicleScene::frame(ObservedState const& now, std::vector<VisualPart> const& parts) {
   scene_.record(now.t, parts);
   for (m113::Side const side : {m113::Side::left, m113::Side::right})
-    tracks_->track(side).contacts(now.evaluated(), add_contacts(scene_, contacts_, 1e3));
+    add_sums_of_contacts(scene_, contacts_, tracks_->track(side), now.evaluated());
   if (joints_) add_reactions(scene_, *joints_, now, 1e3);
 }
 
