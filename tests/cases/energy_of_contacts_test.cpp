@@ -64,7 +64,7 @@ std::vector<Case> contacts() {
           {"CapsuleOnCapsule", 0.2, 1e-4, 2,
            falls(CapsuleOnCapsule{.radius_a = 0.05, .length_a = 0.3, .radius_b = 0.05, .length_b = 0.4, .taper = 1e-4},
                  {0.2, 0.5, 0.1}, 0.11)},
-          {"CapsuleOnBox", 0.3, 1e-4, 2,
+          {"CapsuleOnBox", 0.15, 2e-5, 2,
            falls(CapsuleOnBox{.radius = 0.05, .length = 0.3, .size = base, .rounding = 0.01, .taper = 2e-3},
                  {0.2, 0.5, 0.1}, 0.17)},
           {"Compound", 0.3, 1e-4, 2,
