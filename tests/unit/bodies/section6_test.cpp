@@ -1,6 +1,8 @@
 // Sections given by matrices: laws of the bodies that accept couplings, offsets and sections along the bar; refusals.
 
+#include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/polar_interpolation.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
 
 #include <polybody/testing/flexible_body_laws.hpp>
@@ -32,7 +34,7 @@ struct Case {
 };
 template <class B>
 struct MeasuredBeam : testing::Test, BodyLaws<Case<B>> {};
-using Bodies = testing::Types<Se3Beam, Lrvf<>>;
+using Bodies = testing::Types<Se3Beam, Lrvf<>, Lrvf<Polar>, Lrvf<Directors, FullQuadrature>>;
 TYPED_TEST_SUITE(MeasuredBeam, Bodies);
 
 TYPED_TEST(MeasuredBeam, ForceIsTheGradientOfTheEnergyAndTheTangentThatOfTheForce) {

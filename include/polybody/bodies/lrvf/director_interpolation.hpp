@@ -39,11 +39,9 @@ struct DirectorSection {
 template <StrainQuadrature Quadrature>
 class ElasticElements<Directors, Quadrature> {
  public:
-  /// Chain of `elements` elements, each of arc length l [m].
-  ElasticElements(LrvfSection const& section, Placement const&, double l, Index elements)
-      : sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
-        l_(l),
-        free_(std::size_t(elements)) {}
+  /// Chain of `elements` elements, each of arc length l [m]. `sections` are those of all elements, or of each.
+  ElasticElements(std::vector<LrvfSection> const& sections, Placement const&, double l, Index elements)
+      : sections_(sections), l_(l), free_(std::size_t(elements)) {}
 
   Index size() const { return Index(free_.size()); }  ///< number of elements
 
@@ -62,7 +60,7 @@ class ElasticElements<Directors, Quadrature> {
       Vec<T, 3> const other = moment(node);
       for (int k = 0; k < 3; ++k) out[6 * node + 3 + k] = other[k];
     }
-    add_force<T>(free_[std::size_t(e)], q.subspan(std::size_t(7 * e), 14), v.subspan(std::size_t(6 * e), 12), out);
+    add_force<T>(e, q.subspan(std::size_t(7 * e), 14), v.subspan(std::size_t(6 * e), 12), out);
   }
 
   /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v): the derivative of −f(q ⊞ ck δ, v + cd δ) with respect to δ.
@@ -84,7 +82,7 @@ class ElasticElements<Directors, Quadrature> {
       moving[std::size_t(i)].d[i] = cd;
     }
     Vec<D, 12> f = detail::zeros<Vec<D, 12>>();
-    add_force<D>(free_[std::size_t(e)], std::span<D const>(at), std::span<D const>(moving), f);
+    add_force<D>(e, std::span<D const>(at), std::span<D const>(moving), f);
     for (int c = 0; c < 12; ++c)
       for (int r = 0; r < 12; ++r) k(r, c) = -f[r].d[c];
   }
@@ -92,7 +90,7 @@ class ElasticElements<Directors, Quadrature> {
   /// Strain energy of element e [J].
   double energy(Index e, std::span<double const> q) const {
     double sum = 0.0;
-    for (int i = 0; i < count; ++i) sum += sections_[std::size_t(i)].energy(strains(i, e, q));
+    for (int i = 0; i < count; ++i) sum += sections_[e][std::size_t(i)].energy(strains(i, e, q));
     return l_ * sum;
   }
   /// Strains (Γ, K) in the middle of element e, components along the directors [1], [1/m].
@@ -119,9 +117,10 @@ class ElasticElements<Directors, Quadrature> {
         for (int j = 0; j < 3; ++j) out.slide(i, 3 * node + j) = x(i, j) * share[node];
     }
   }
-  /// Adds the force of one element; q and v contain only this element.
+  /// Adds the force of element e; q and v contain only this element.
   template <StateScalar T>
-  void add_force(Free const& free, std::span<T const> q, std::span<T const> v, Vec<T, 12>& out) const {
+  void add_force(Index e, std::span<T const> q, std::span<T const> v, Vec<T, 12>& out) const {
+    Free const& free = free_[std::size_t(e)];
     Quaternion<T> const a = detail::turned<T>(q, 0), b = detail::turned<T>(q, 1);
     detail::RelativeTurn<T> const turn(a, b);
     std::array<Mat<T, 3, 3>, 2> const nodes = {rotation_matrix<T>(a), rotation_matrix<T>(b)};
@@ -141,7 +140,7 @@ class ElasticElements<Directors, Quadrature> {
         s.m[k] = turn.u[k] - free.at[std::size_t(i)].turn[k];
         s.rate[k] = moved[k] + slid[k];
       }
-      sections_[std::size_t(i)].stress(s);
+      sections_[e][std::size_t(i)].stress(s);
       Vec<T, 3> const pull = product(at.directors, s.n);
       Vec<T, 6> const of_n = transposed_product(at.slide, s.n), of_m = transposed_product(turn.by_u, s.m);
       for (int k = 0; k < 3; ++k)
@@ -168,7 +167,7 @@ class ElasticElements<Directors, Quadrature> {
     return x;
   }
 
-  std::array<LrvfSection, count> sections_;
+  detail::QuadratureSections<Quadrature> sections_;
   double l_;
   std::vector<Free> free_;
 };

@@ -66,11 +66,7 @@ class ElasticElements {
   /// Chain of `elements` elements, each of arc length l [m], of a bar with this placement.
   /// `sections` are those of all elements, or of each.
   ElasticElements(std::vector<LrvfSection> const& sections, Placement const& placement, double l, Index elements)
-      : interpolation_(placement), l_(l), free_(std::size_t(elements)) {
-    for (LrvfSection const& section : sections)
-      sections_.push_back(
-          std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points));
-  }
+      : interpolation_(placement), sections_(sections), l_(l), free_(std::size_t(elements)) {}
 
   Index size() const { return Index(free_.size()); }  ///< number of elements
 
@@ -208,7 +204,7 @@ class ElasticElements {
   }
   template <int i>
   LrvfSection const& section(Index e) const {
-    return sections_[sections_.size() == 1 ? 0 : std::size_t(e)][i];
+    return sections_[e][i];
   }
   template <int i>
   Vec6 strains_in(Index e, std::span<double const> q) const {
@@ -223,7 +219,7 @@ class ElasticElements {
   }
 
   Interpolation interpolation_;
-  std::vector<std::array<LrvfSection, count>> sections_;  ///< of all elements, or of each
+  detail::QuadratureSections<Quadrature> sections_;
   double l_;
   std::vector<Free> free_;
 };

@@ -3,6 +3,10 @@
 /// Linear elastic section of an `Lrvf` in space: section forces, and tangent of an element from the strains at one of
 /// its sections. Theory: Eqs. 2.56, 2.57, 2.60 to 2.63, 2.121 to 2.124.
 
+#include <array>
+#include <tuple>
+#include <vector>
+
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
@@ -189,5 +193,26 @@ class LrvfSection : public RodSection {
     return out;
   }
 };
+
+namespace detail {
+/// Sections at the points of a quadrature, of all elements or of each.
+template <StrainQuadrature Quadrature>
+class QuadratureSections {
+ public:
+  static constexpr std::size_t count = Quadrature::points.size();  ///< number of points
+
+  /// `sections` are those of all elements, or of each.
+  explicit QuadratureSections(std::vector<LrvfSection> const& sections) {
+    for (LrvfSection const& section : sections)
+      at_.push_back(
+          std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points));
+  }
+  /// Sections at the points of element e.
+  std::array<LrvfSection, count> const& operator[](Index e) const { return at_[at_.size() == 1 ? 0 : std::size_t(e)]; }
+
+ private:
+  std::vector<std::array<LrvfSection, count>> at_;
+};
+}  // namespace detail
 
 }  // namespace polybody
