@@ -187,8 +187,8 @@ TEST(TimeLaws, RefuseNumbersThatCannotBeMeant) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has(refusal([] { check_time_function(Ramp{.target = 1.0, .duration = 0.0}, "drive"); }),
                   "drive: the duration must be positive and finite, but is 0 s."));
-  EXPECT_TRUE(
-      has(refusal([] { check_time_function(SmoothRamp{.target = 1.0, .duration = -2.5}, "drive"); }), "but is -2.5 s."));
+  EXPECT_TRUE(has(refusal([] { check_time_function(SmoothRamp{.target = 1.0, .duration = -2.5}, "drive"); }),
+                  "but is -2.5 s."));
   EXPECT_TRUE(
       has(refusal([&] { check_time_function(SmoothRamp{.target = nan, .duration = 1.0}, "drive"); }), "target"));
   EXPECT_TRUE(
