@@ -48,6 +48,8 @@ std::vector<BodyOnPolicy> rigid_bodies(Mechanism);
 std::vector<BodyOnPolicy> spatial_rigid_bodies(Mechanism);
 std::vector<BodyOnPolicy> lrvf_beams(Mechanism);
 std::vector<BodyOnPolicy> spatial_lrvf_beams(Mechanism);
+std::vector<BodyOnPolicy> helicoidal_beams(Mechanism);
+std::vector<BodyOnPolicy> spatial_helicoidal_beams(Mechanism);
 std::vector<BodyOnPolicy> green_cables(Mechanism);
 std::vector<BodyOnPolicy> engineering_cables(Mechanism);
 std::vector<BodyOnPolicy> floating_frames(Mechanism);

@@ -25,7 +25,8 @@ struct Mechanisms {
 
 std::vector<std::string> const own_cases{"run", "compare", "combinations"};
 std::vector<std::string> const all_bodies{"rigid",     "lrvf",        "ancf",      "ancf-engineering",    "ffr",
-                                          "ffr-modal", "rigid-space", "ancf-beam", "ancf-beam-continuum", "lrvf-space"};
+                                          "ffr-modal", "rigid-space", "ancf-beam", "ancf-beam-continuum", "lrvf-space",
+                                          "se3",       "se3-space"};
 
 struct OneRun {
   Vec3 tip = Vec3::Zero();  // at the end [m]

@@ -4,8 +4,9 @@ namespace chapter2 {
 
 std::vector<BodyOnPolicy> bodies_on_policies(Mechanism mechanism) {
   std::vector<BodyOnPolicy> table;
-  for (auto const of_body : {rigid_bodies, lrvf_beams, green_cables, engineering_cables, floating_frames,
-                             spatial_rigid_bodies, elastic_line_beams, continuum_beams, spatial_lrvf_beams})
+  for (auto const of_body :
+       {rigid_bodies, lrvf_beams, green_cables, engineering_cables, floating_frames, spatial_rigid_bodies,
+        elastic_line_beams, continuum_beams, spatial_lrvf_beams, helicoidal_beams, spatial_helicoidal_beams})
     for (BodyOnPolicy& one : of_body(mechanism)) table.push_back(std::move(one));
   return table;
 }
