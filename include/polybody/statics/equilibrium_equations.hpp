@@ -308,16 +308,16 @@ struct EquilibriumPath {
   [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at,
                                       std::string const& branching) const {
     if (result == NewtonResult::singular) {
-      std::string const first = system.name_of(std::max<Index>(first_bad, 0));
+      std::string const row = system.name_of(std::max<Index>(first_bad, 0));
       if (!branching.empty())
         throw SingularMatrix(
             "equilibrium.singular",
-            {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{first},
+            {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{row},
              ". The initial state is a singular configuration: the constraint equations of ", branching,
              " are redundant there, but not nearby, and their forces are not determined. Replace one of these joints "
              "by a joint with fewer constraint equations, or fix the bodies in another way."});
       throw SingularMatrix("equilibrium.singular",
-                           {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{first},
+                           {"equilibrium: the stiffness is singular", at, ", first at ", ErrorObject{row},
                             ". Fix every body, or pass a limit point with equilibrium_path."});
     }
     if (result == NewtonResult::not_finite)

@@ -95,9 +95,9 @@ struct Inertia {
   friend Inertia operator+(Inertia const& a, Inertia const& b) {
     a.check("Inertia");
     b.check("Inertia");
-    double const mass = a.mass + b.mass;
-    return {mass, Vec3(a.centre * (a.mass / mass) + b.centre * (b.mass / mass)),
-            Mat3(a.tensor + b.tensor + detail::point_inertia(a.mass * (b.mass / mass), b.centre - a.centre))};
+    double const total = a.mass + b.mass;
+    return {total, Vec3(a.centre * (a.mass / total) + b.centre * (b.mass / total)),
+            Mat3(a.tensor + b.tensor + detail::point_inertia(a.mass * (b.mass / total), b.centre - a.centre))};
   }
 
   /// Solid cuboid of `mass` [kg] with the `edges` (3) along x, y and z [m]; the origin is its centre.
