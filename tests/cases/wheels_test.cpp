@@ -41,16 +41,17 @@ TEST(Tyre, FreeWheelRollsWithoutSlipAtLast) {
   State x = model.reference_state();
   model.set_velocity(x, wheel, Vec3(v0, 0, 0), Vec3::Zero());
   EnergyAudit audit(model);
-  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 3.0, .step = 1e-3}))
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 3.0, .step = 2.5e-4}))
     audit.record(now);
   Frame<double> const f = frame(model, x, wheel.at(Vec2(0, 0)));
   double const v = m * r * r * v0 / (m * r * r + j);
   char const* const how = "J ω + m r v is constant, v = ω r";
-  held({"Wheel", "speed of a wheel that slid at first [m/s]", By::closed_form, how, "planar Rigid, h = 1e-3 s"}, f.v[0],
-       v, 1e-9);
+  held({"Wheel", "speed of a wheel that slid at first [m/s]", By::closed_form, how, "planar Rigid, h = 2.5e-4 s"},
+       f.v[0], v, 1e-9);
   held({"Wheel", "angular velocity of a wheel that slid at first [rad/s]", By::closed_form, how,
-        "planar Rigid, h = 1e-3 s"},
+        "planar Rigid, h = 2.5e-4 s"},
        -f.w[2], v / r, 1e-9);
+  // The tyre saturates within 2 ms. This corner of the power adds h²/8 times the jump of its slope to the audit.
   EXPECT_NEAR(audit.dissipated(), 0.5 * m * v0 * v0 - 0.5 * (m + j / (r * r)) * v * v, 0.02);
   EXPECT_LT(audit.relative(), 1e-5);
 }

@@ -252,7 +252,8 @@ TEST(Bar, WantsEitherASectionWithMaterialOrConstants) {
   constants_and_material.material = circular().material;
   constants_and_section.section = circular().section;
   for (Bar const& bar : {section_alone, material_alone, nothing, both, constants_and_material, constants_and_section})
-    EXPECT_TRUE(has(refusal([&] { (void)constants(bar); }), "either a section with a material, or constants"));
+    EXPECT_TRUE(has(refusal([&] { (void)constants(bar); }),
+                    "either a shape with a material, or matrices (Section6), or constants"));
 }
 
 TEST(Bar, RefusesAPlacementThatIsNone) {

@@ -68,7 +68,8 @@ TEST(ShearFactor, IsRefusedWhereItMeansNothing) {
   EXPECT_TRUE(has(refusal([] { constants(thick(0.0)); }), "the shear factor"));
   Bar by_constants{.length = 1.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1}};
   by_constants.shear_factor = 0.8;
-  EXPECT_TRUE(has(refusal([&] { constants(by_constants); }), "The constants already contain the shear stiffness GA"));
+  EXPECT_TRUE(
+      has(refusal([&] { constants(by_constants); }), "Constants and matrices already contain the shear stiffness"));
   using Full = AncfBeam<Continuum<Locking::present>>;
   EXPECT_TRUE(has(refusal([] { Full::from(thick(0.8), 2); }), "without a shear factor"));
 }
