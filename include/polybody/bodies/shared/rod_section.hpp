@@ -25,7 +25,7 @@ Mat<T, l, n> small_product(Mat<S, l, m> const& a, Mat<T, m, n> const& b) {
 /// Stiffness, damping and pretension of a section with the strains (Γ, K) of the line of the centres of mass.
 class RodSection {
  public:
-  /// Section for elements of arc length `l`. `pretension` acts in the axis of the bar [N].
+  /// `section` for elements of arc length `l` [m]. `pretension` acts in the axis of the bar [N].
   template <class T = double>  // compiled only if used
   RodSection(detail::CentredSection const& section, T l, double pretension)
       : l_(l), pretension_(pretension), centre_(section.centre), matrix_(section.stiffness), damper_(section.damping) {
@@ -42,7 +42,7 @@ class RodSection {
   bool damped() const { return damped_; }    ///< true if a damping time is not zero
   bool coupled() const { return coupled_; }  ///< true if the stiffness matrix is not diagonal, or for an offset
 
-  /// Section forces N, M for coupled strains and their rates, with the pretension.
+  /// Sets the section forces `n` [N] and `m` [N m] for coupled `strains` and their `rates`, with the pretension.
   template <class T>
   void stress(ScrewVector<T> const& strains, ScrewVector<T> const& rates, Vec<T, 3>& n, Vec<T, 3>& m) const {
     for (int r = 0; r < 6; ++r) {
@@ -66,7 +66,7 @@ class RodSection {
     n[0] += pretension_;
     return n;
   }
-  /// Strains Γ + c × K, K of the axis of the bar, with the centre of mass c.
+  /// Strains Γ + c × K, K of the axis of the bar for `strains` (6) of the line of the centres of mass c.
   template <class T = double>  // compiled only if used
   Vec<T, 6> axis_strains(Vec<T, 6> const& strains) const {
     return coupled_ ? moved<T>(strains, 0, 3) : strains;
@@ -98,7 +98,8 @@ class RodSection {
   Vec6 time_;                          ///< damping times [s]
   Vec3 centre_;                        ///< centre of mass in the section [m]
   Mat<double, 6, 6> matrix_, damper_;  ///< stiffness, and stiffness times damping times
-  bool damped_ = false, coupled_ = false;
+  bool damped_ = false;                ///< true if a damping time is not zero
+  bool coupled_ = false;               ///< true if the matrices are used
 
  private:
   /// Component i of the section forces in the reference configuration, (P, 0, 0) and −c × (P, 0, 0).
