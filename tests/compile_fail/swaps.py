@@ -133,7 +133,7 @@ def main(source, compiler, *includes):
     page = (source / "README.md").read_text(encoding="utf-8")
     axes = Axes((source / "docs/joints.md").read_text(encoding="utf-8"))
     program = re.search(r"```cpp\n.*?(int main\(\) \{\n.*?)```", page, re.S).group(1)
-    text, programs = "#include <polybody/bodies/ffr/ffr.hpp>\n#include <polybody/bodies/ffr/planar_ffr.hpp>\n", {}
+    text, programs = "#include <polybody/ffr.hpp>\n#include <polybody/se3_beam.hpp>\n", {}
     text += "#include <polybody/polybody.hpp>\n#include <iostream>\nusing namespace polybody;\n"
     for i, choice in enumerate(refused(axes)):
         programs[text.count("\n") + 1] = choice
