@@ -152,6 +152,35 @@ def eq_6_33_6_34_6_37():
                 require(grows(lambda *y: method(part * limit, *y), y) == (part > 1), f"{method.__name__} at {part} of its limit")
 
 
+def eq_6_39_6_40_6_41_6_42_6_43_6_44():
+    alike = lambda a, b: agree([a], [b])
+    start, u, change = rotation(vector()), vector(), vector()
+    inertia, h, chi = [2.0, 3.0, 4.0], 0.3, 0.2
+    mean = add(u, change, -chi)  # of the angular velocity, with u = mean + chi change
+    first, last = add(mean, change, -0.5), add(mean, change, 0.5)
+    momentum = lambda w: [j * x for j, x in zip(inertia, w)]
+    c = times(h, u)
+    angle = 2 * math.atan(0.5 * norm(c))
+    end = product(start, rotation(times(angle / norm(c), c)))
+    for x in [1, 0, 0], [0, 1, 0], [0, 0, 1]:  # (1 - c/2) Rᵀ₀ R₁ = 1 + c/2
+        y = apply(product(turned(start), end), x)
+        alike(add(y, cross(c, y), -0.5), add(x, cross(c, x), 0.5))
+    middle = [[0.5 * (a + b) for a, b in zip(*rows)] for rows in zip(start, end)]
+    turn = apply(start, c)  # P c
+    alike(apply(turned(middle), turn), c)
+    for k in range(3):
+        alike(add(turned(end)[k], turned(start)[k], -1), cross(turn, turned(middle)[k]))
+    force = times(1 / h, add(momentum(change), times(h, cross(u, momentum(mean)))))
+    energy = lambda w: 0.5 * dot(w, momentum(w))
+    same(energy(last) - energy(first), -chi * dot(change, momentum(change)) + dot(c, force), 1e-12)
+    alike(add(apply(end, momentum(last)), apply(start, momentum(first)), -1), times(h, apply(middle, force)))
+    phi = vector()
+    r = rotation(phi)
+    g = times(1 / (1 + r[0][0] + r[1][1] + r[2][2]), [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]])
+    quarter = times(1 / (1 + sqrt(1 + dot(g, g))), g)
+    alike(times(4 * math.atan(norm(quarter)) / norm(quarter), quarter), phi)
+
+
 def eq_7_17():
     u, v = vector(4), vector(4)
     a = [[u[i] * u[j] + v[i] * v[j] for j in range(4)] for i in range(4)]  # rank 2

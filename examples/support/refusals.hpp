@@ -51,8 +51,11 @@ constexpr char const* integrator_refusal() {
     return "EnergyMomentum and EnergyDecaying do not support policies that eliminate coordinates, such as AncfLinear "
            "and JointCoordinates. Use Constraint.";
   else if constexpr (!SecantSupport<M>::bodies)
-    return "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step: "
-           "cables, ANCF beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.";
+    return "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step. "
+           "Use GeneralisedAlpha for Ffr, Rigid<EulerParameters>, and Lrvf with another interpolation than "
+           "RelativeRotation.";
+  else if constexpr (!SecantSupport<M>::elements)
+    return "EnergyMomentum and EnergyDecaying do not support force groups. Use GeneralisedAlpha.";
   else
     static_assert(sentence_missing<M>, "Add the sentence of system_for.");
 }

@@ -3,6 +3,6 @@
 
 using namespace polybody;
 
-void run(Model<Bodies<Rigid<>>, Joints<>> const& model, State& x) {
+void run(Model<Bodies<Lrvf<Direct>>, Joints<>> const& model, State& x) {
   simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}).run();
 }

@@ -110,9 +110,7 @@ struct ConservingStep {
     Index bad = -1;
 
     SecantStep secant() const { return {&x.q, &w.q, x.t, h, method.chi, &x.v, &w.vd}; }
-    void move() {
-      for (Index i = 0; i < w.q.size(); ++i) w.q[i] = x.q[i] + h * x.v[i] + s * w.vd[i];
-    }
+    void move() { w.secants.move(secant(), w.q); }
     bool evaluate() {
       move();
       return evaluate_here();

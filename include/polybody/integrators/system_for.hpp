@@ -56,8 +56,9 @@ System system_for(M const& model) {
                   "AncfLinear and JointCoordinates. Use Constraint.");
     static_assert(
         CompatibilityReport::bodies,
-        "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step: "
-        "cables, ANCF beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
+        "EnergyMomentum and EnergyDecaying need bodies with a constant mass matrix and a mean force over a step. "
+        "Use GeneralisedAlpha for Ffr, Rigid<EulerParameters>, and Lrvf with another interpolation than "
+        "RelativeRotation.");
     static_assert(CompatibilityReport::policies || !FullStateModel<M>,
                   "EnergyMomentum and EnergyDecaying support the policies Constraint, Penalty and Bushing. Use "
                   "GeneralisedAlpha for others.");

@@ -26,6 +26,14 @@ Quaternion<T> conjugate(Quaternion<T> const& q) {
   return {q[0], -q[1], -q[2], -q[3]};
 }
 
+/// Unit quaternion q/|q|.
+template <class T>
+Quaternion<T> unit_quaternion(Quaternion<T> const& q) {
+  using std::sqrt;
+  T const scale = 1.0 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  return {q[0] * scale, q[1] * scale, q[2] * scale, q[3] * scale};
+}
+
 /// Writes the rotation matrix A(q), 3×3, of a unit quaternion q to `a`.
 template <class T>
 void set_rotation(Quaternion<T> const& q, Mat<T, 3, 3>& a) {

@@ -77,7 +77,10 @@ class TypedSecants final : public SecantOperations {
 
  public:
   TypedSecants(M const& model, Data<double> const& data)
-      : model_(model), markers_(std::size_t(model.markers())), middle_(VecX::Zero(model.coordinates())) {
+      : model_(model),
+        markers_(std::size_t(model.markers())),
+        middle_(VecX::Zero(model.coordinates())),
+        still_(VecX::Zero(model.velocities())) {
     Index marker_size = 0, row_entries = 0, widest = 1;
     for (std::size_t i = 0; i < markers_.size(); ++i) {
       MarkerKinematics<double> const& p = data.markers[i];
@@ -126,12 +129,29 @@ class TypedSecants final : public SecantOperations {
   TypedSecants(TypedSecants const&) = delete;  // markers and constraints point into the arenas
   TypedSecants& operator=(TypedSecants const&) = delete;
 
+  /// Writes q0 + y to q1; the frames of q1 are turned by the Cayley vectors in y.
+  void move(VecX const& q0, VecX const& y, VecX& q1) const override {
+    model_.for_each_body([&](auto const& e) {
+      using B = std::decay_t<decltype(e.body)>;
+      std::span<double const> const from = part_of(q0, e);
+      if constexpr (HasFrameSteps<B>)
+        plus_cayley<double>(from, velocities_of(y, e), part_of(q1, e));
+      else
+        e.body.template plus<double>(from, velocities_of(y, e), part_of(q1, e));
+    });
+  }
+  VecX const& middle() const override { return middle_; }
+
   /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at the
   /// end of the step. Loads are evaluated at the midpoint of the step, like the data of the system.
   void evaluate(SecantStep const& step) override {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
     for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
+    model_.for_each_body([&](auto const& e) {
+      if constexpr (HasFrameSteps<std::decay_t<decltype(e.body)>>)
+        frames_between<double>(part_of(*step.q0, e), part_of(*step.q1, e), part_of(middle_, e));
+    });
     for_each_pool_with(model_.body_pools(), bodies_,
                        [&](auto const& pool, auto& scratch) { evaluate_marker(pool, scratch); });
     for_each_pool_with(model_.joint_pools(), constraints_, [&](auto const& pool, auto& constraints) {
@@ -146,8 +166,11 @@ class TypedSecants final : public SecantOperations {
       using B = std::decay_t<decltype(e.body)>;
       Vec<double, B::element_columns> inertia, force, weight;
       for (Index i = 0; i < e.body.elements(); ++i) {
-        e.body.template inertia<double>(i, part_of(middle_, e), part_of(a, e), inertia);
-        e.body.discrete_force(i, part_of(*step_.q0, e), part_of(*step_.q1, e), means_, force);
+        e.body.template inertia<double>(i, part_of(middle_, e), velocities_of(a, e), inertia);
+        if constexpr (HasFrameSteps<B>)
+          e.body.discrete_force(i, frame_step(e), force);
+        else
+          e.body.discrete_force(i, part_of(*step_.q0, e), part_of(*step_.q1, e), means_, force);
         e.body.template gravity<double>(i, part_of(middle_, e), model_.gravity().g, weight);
         double* const rows = r.data() + e.v0 + e.body.first_column(i);
         for (int k = 0; k < B::element_columns; ++k) rows[k] += inertia[k] - force[k] - weight[k];
@@ -188,7 +211,10 @@ class TypedSecants final : public SecantOperations {
       using B = std::decay_t<decltype(e.body)>;
       Mat<double, B::element_columns, B::element_columns> k, mass;
       for (Index i = 0; i < e.body.elements(); ++i) {
-        e.body.discrete_tangent(i, part_of(*step_.q0, e), part_of(*step_.q1, e), means_, s, k);
+        if constexpr (HasFrameSteps<B>)
+          e.body.discrete_tangent(i, frame_step(e), part_of(middle_, e), velocities_of(still_, e), s, k);
+        else
+          e.body.discrete_tangent(i, part_of(*step_.q0, e), part_of(*step_.q1, e), means_, s, k);
         e.body.mass(i, part_of(middle_, e), mass);
         k += mass;
         sink.add(e.v0 + e.body.first_column(i), e.v0 + e.body.first_column(i), k);
@@ -226,8 +252,25 @@ class TypedSecants final : public SecantOperations {
 
  private:
   template <class Entry>
-  static auto part_of(VecX const& x, Entry const& e) {
-    return body_part(x, e.q0, e.body.coordinates());
+  static std::span<double const> part_of(VecX const& x, Entry const& e) {
+    return {x.data() + e.q0, std::size_t(e.body.coordinates())};
+  }
+  template <class Entry>
+  static std::span<double> part_of(VecX& x, Entry const& e) {
+    return {x.data() + e.q0, std::size_t(e.body.coordinates())};
+  }
+  template <class Entry>
+  static std::span<double const> velocities_of(VecX const& x, Entry const& e) {
+    return {x.data() + e.v0, std::size_t(e.body.velocities())};
+  }
+  template <class Entry>
+  FrameStep frame_step(Entry const& e) const {
+    return {part_of(*step_.q0, e),
+            part_of(*step_.q1, e),
+            velocities_of(*step_.v0, e),
+            velocities_of(*step_.a, e),
+            step_.h,
+            step_.decay};
   }
   MarkerSecant const& marker(Index i) const { return markers_[std::size_t(i)]; }
   template <class F>
@@ -237,6 +280,17 @@ class TypedSecants final : public SecantOperations {
     });
   }
 
+  template <class S>
+  void set_marker(Index published, FrameSecant<S> const& frame) {
+    MarkerSecant& m = markers_[std::size_t(published)];
+    for (int j = 0; j < 12; ++j) {
+      S const& x = j < 3 ? frame.r[j] : frame.R(j % 3, j / 3 - 1);
+      m.from[std::size_t(j)] = x.a;
+      m.to[std::size_t(j)] = x.b;
+      for (int c = 0; c < int(x.d.size()); ++c) m.slopes[12 * c + j] = x.d[c];
+    }
+  }
+
   template <class Pool, class Scratch>
   void evaluate_marker(Pool const& pool, Scratch& scratch) {
     using B = std::decay_t<decltype(pool.entries.front().body)>;
@@ -244,20 +298,18 @@ class TypedSecants final : public SecantOperations {
     using S = Secant<n>;
     for (auto const& p : pool.markers) {
       auto const& e = pool.entries[std::size_t(p.body)];
-      Index const first = e.body.first_column(p.point);
-      for (int i = 0; i < n; ++i)
-        scratch.q[std::size_t(first + i)] =
-            S::variable((*step_.q0)[e.q0 + first + i], (*step_.q1)[e.q0 + first + i], i);
-      MarkerKinematics<S> out;
-      out.jacobian = scratch.jacobian.data();
-      e.body.template evaluate_marker<S>(p.point, p.axes, std::span<S const>(scratch.q),
-                                         std::span<S const>(scratch.rest), out);
-      MarkerSecant& m = markers_[std::size_t(p.published)];
-      for (int j = 0; j < 12; ++j) {
-        S const& x = j < 3 ? out.frame.r[j] : out.frame.A(j % 3, j / 3 - 1);
-        m.from[std::size_t(j)] = x.a;
-        m.to[std::size_t(j)] = x.b;
-        for (int c = 0; c < n; ++c) m.slopes[12 * c + j] = x.d[c];
+      if constexpr (HasFrameSteps<B>) {
+        set_marker(p.published, e.body.template discrete_marker<S>(p.point, p.axes, frame_step(e)));
+      } else {
+        Index const first = e.body.first_column(p.point);
+        for (int i = 0; i < n; ++i)
+          scratch.q[std::size_t(first + i)] =
+              S::variable((*step_.q0)[e.q0 + first + i], (*step_.q1)[e.q0 + first + i], i);
+        MarkerKinematics<S> out;
+        out.jacobian = scratch.jacobian.data();
+        e.body.template evaluate_marker<S>(p.point, p.axes, std::span<S const>(scratch.q),
+                                           std::span<S const>(scratch.rest), out);
+        set_marker<S>(p.published, {out.frame.r, out.frame.A});
       }
     }
   }
@@ -350,7 +402,7 @@ class TypedSecants final : public SecantOperations {
   typename Workspaces::Scratch bodies_;
   typename Workspaces::Constraints constraints_;
   Sequence<double> slopes_, rows_, scratch_;  ///< arenas of markers and constraint functions; workspace for one block
-  VecX middle_;
+  VecX middle_, still_;                       ///< coordinates in the middle of the step; zero velocities
 };
 
 }  // namespace polybody::detail

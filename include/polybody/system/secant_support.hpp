@@ -2,7 +2,7 @@
 /// \file
 /// Requirements of energy-conserving integration on bodies, policies and forces.
 
-#include <polybody/bodies/shared/node_chain.hpp>
+#include <polybody/bodies/shared/frame_secants.hpp>
 #include <polybody/forces/reaction_force.hpp>
 #include <polybody/math/secant.hpp>
 #include <polybody/math/sequence.hpp>
@@ -39,7 +39,7 @@ struct SecantSupportOf;
 template <class... Bs, class... Js, class... Fs>
 struct SecantSupportOf<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry<Js>>...>,
                        std::tuple<Sequence<ForceEntry<Fs>>...>> {
-  static constexpr bool bodies = (HasDiscreteForce<Bs> && ...);
+  static constexpr bool bodies = ((HasDiscreteForce<Bs> || HasFrameSteps<Bs>) && ...);
   static constexpr bool policies = (HasMeanMultiplier<typename Js::PolicyType> && ...);
   static constexpr bool positions = ((nonholonomic_equations<typename Js::Geometry>() == 0) && ...);
   static constexpr bool elements = !(ForceGroup<Fs> || ...);

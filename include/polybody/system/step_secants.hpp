@@ -16,16 +16,19 @@ struct SecantStep {
   double t = 0.0;            ///< time at the beginning of the step [s]
   double h = 0.0;            ///< length of the step [s]
   double decay = 0.0;        ///< χ [1]; the step dissipates χ ΔεᵀCΔε, with the strains ε and the elastic stiffness C
-  VecX const* v0 = nullptr;  ///< (nv) velocities at t; only the first-order states are read
-  VecX const* a = nullptr;   ///< (nv) rates over the step; only those of first-order states are read
+  VecX const* v0 = nullptr;  ///< (nv) velocities at t
+  VecX const* a = nullptr;   ///< (nv) mean accelerations, and rates of first-order states
 };
 
 /// Functions of a model for a `SecantStep`.
 class SecantOperations {
  public:
   virtual ~SecantOperations() = default;
+  /// Writes the coordinates at the end of a step from q0 with the increments y = h v₀ + (½ + χ) h² a to q1.
+  virtual void move(VecX const& q0, VecX const& y, VecX& q1) const = 0;
   /// Sets the step for the other functions.
   virtual void evaluate(SecantStep const& step) = 0;
+  virtual VecX const& middle() const = 0;  ///< coordinates in the middle of the step
   /// r = M a − f + Ḡᵀλ over the step (nv).
   virtual void residual(Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r) = 0;
   virtual void violation(VecX& phi) const = 0;              ///< writes Φ(q₁) to phi
@@ -37,20 +40,24 @@ class StepSecants {
  public:
   /// Allocates the workspace. \throws InvalidInput for a system without `Capabilities::secants`.
   explicit StepSecants(System const& system)
-      : operations_(system.operations().make_secants(system.data())),
-        middle_(VecX::Zero(system.coordinates())),
-        speed_(VecX::Zero(system.velocities())) {}
+      : operations_(system.operations().make_secants(system.data())), speed_(VecX::Zero(system.velocities())) {}
+
+  /// Writes the coordinates at the end of `step` from q0 to `q1`.
+  void move(SecantStep const& step, VecX& q1) {
+    double const linear = step.h, square = (0.5 + step.decay) * step.h * step.h;
+    for (Index i = 0; i < speed_.size(); ++i) speed_[i] = linear * (*step.v0)[i] + square * (*step.a)[i];
+    operations_->move(*step.q0, speed_, q1);
+  }
 
   /// Sets the step. Constraint functions of time are evaluated at the end of the step, loads and first-order states at
   /// the midpoint. Afterwards `system` is evaluated at the midpoint.
   void evaluate(System& system, SecantStep const& step) {
     h_ = step.h;
     Index const bodies = system.layout().body_velocities();
-    for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
-    for (Index i = 0; i < bodies; ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
-    for (Index i = bodies; i < speed_.size(); ++i) speed_[i] = (*step.v0)[i] + 0.5 * step.h * (*step.a)[i];
-    system.evaluate(middle_, speed_, step.t + 0.5 * step.h);
+    for (Index i = 0; i < speed_.size(); ++i)
+      speed_[i] = (*step.v0)[i] + (i < bodies ? 0.5 + step.decay : 0.5) * step.h * (*step.a)[i];
     operations_->evaluate(step);
+    system.evaluate(operations_->middle(), speed_, step.t + 0.5 * step.h);
   }
   /// r = M a − f + Ḡᵀλ over the step (nv).
   void residual(System const& system, VecX const& a, VecX const& lambda, VecX& r) const {
@@ -95,7 +102,7 @@ class StepSecants {
 
   std::shared_ptr<SecantOperations> operations_;
   double h_ = 0.0;
-  VecX middle_, speed_;
+  VecX speed_;
 };
 
 }  // namespace polybody

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 #include <polybody/forces/loads.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/run/probe.hpp>
@@ -53,6 +55,19 @@ TEST(EnergyMomentumInSpace, KeepsEnergyAndMomentaOfAThrownCableOverTenThousandSt
   EXPECT_LT((momentum(cable.model, cable.x).linear - Vec3(50, 0, 0)).norm(), 1e-9);
   Drift const drift = drift_of(cable.model, cable.x, EnergyMomentum{}, 0.01, 10000);
   held_drift(drift, "D4's loads on an AncfCable, 6 elements, EnergyMomentum, 1e4 steps of 10 ms");
+}
+
+TEST(EnergyMomentumInSpace, KeepsThemOfAThrownSe3Beam) {
+  Thrown<Se3Beam> beam(6);
+  EXPECT_LT((momentum(beam.model, beam.x).linear - Vec3(50, 0, 0)).norm(), 1e-9);
+  Drift const drift = drift_of(beam.model, beam.x, EnergyMomentum{}, 0.01, 10000);
+  held_drift(drift, "D4's loads on an Se3Beam, 6 elements, EnergyMomentum, 1e4 steps of 10 ms");
+}
+
+TEST(EnergyMomentumInSpace, KeepsThemOfAThrownLrvf) {
+  Thrown<Lrvf<>> beam(6);
+  Drift const drift = drift_of(beam.model, beam.x, EnergyMomentum{}, 0.01, 10000);
+  held_drift(drift, "D4's loads on an Lrvf, 6 elements, EnergyMomentum, 1e4 steps of 10 ms");
 }
 
 // Kelvin–Voigt damping of the curvature of a bent cable after its release. It dissipates the same energy as in

@@ -13,7 +13,7 @@
 
 #include <polybody/bodies/lrvf/lrvf_section.hpp>
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
-#include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/frame_secants.hpp>
 
 namespace polybody {
 
@@ -106,6 +106,22 @@ class ElasticElements {
       point_tangent<i, T>(e, q, v, ck, cd, more);
       for (int c = 0; c < 12; ++c)
         for (int r = 0; r < 12; ++r) k(r, c) += more(r, c);
+    });
+  }
+
+  /// Calls f(section, strains) for each point of element e with the secants of (Γ, K) over a step, for the motion `x`
+  /// between the nodes:  Γ = exp(−ξφ) R₁ᵀ (r₂ − r₁)/c₀ − Γ₀,  l K = φ − φ₀.
+  template <class S, class F>
+  void for_each_strain(Index e, RelativeSecant<S> const& x, F&& f) const {
+    Free const& free = free_[std::size_t(e)];
+    for_points<0, count>([&]<int i>() {
+      Vec<S, 3> const gamma = transposed_product<S>(exp_so3<S>(scaled<S>(x.phi, Quadrature::points[i].xi)), x.chord);
+      Vec<S, 6> strains;
+      for (int k = 0; k < 3; ++k) {
+        strains[k] = gamma[k] / free.chord - free.at[i].gamma[k];
+        strains[3 + k] = (x.phi[k] - free.at[i].turn[k]) / l_;
+      }
+      f(section<i>(e), strains);
     });
   }
 

@@ -100,6 +100,41 @@ class Lrvf : public FrameChain {
     add_gyroscopic_tangent<T>(e, v, cd, k);
   }
 
+  /// Mean force over an energy-conserving step.
+  template <class T = double>  // compiled only if used
+    requires SecantInterpolation<Interpolation>
+  void discrete_force(Index e, FrameStep const& step, Vec<T, 12>& out) const {
+    set_mean_gyroscopic(e, step, out);
+    RelativeSecant<Secant<12>> const x = relative_secant<Secant<12>>(step, e);
+    elastic_.template for_each_strain<Secant<12>>(
+        e, x, [&](LrvfSection const& section, Vec<Secant<12>, 6> const& strains) {
+          subtract_stress(strains, section.mean_forces(strains, step.means()), out);
+        });
+  }
+  /// Tangent s K̄ of `discrete_force`: that of the state in the middle of the step, with the coordinates `q` and `zero`
+  /// velocities.
+  template <class T>  // compiled only if used
+    requires SecantInterpolation<Interpolation>
+  void discrete_tangent(Index e, FrameStep const& step, std::span<double const> q, std::span<double const> zero,
+                        double s, Mat<T, 12, 12>& k) const {
+    tangent(e, q, zero, s * (0.5 + step.decay), s / step.h, k);
+    add_mean_gyroscopic_tangent(e, step, k);
+  }
+  /// Frame of a marker over an energy-conserving step.
+  template <class S>
+    requires SecantInterpolation<Interpolation>
+  FrameSecant<S> discrete_marker(Point const& p, Mat3 const& axes, FrameStep const& step) const {
+    if (!inside(p)) return marker_on<S>(p, axes, node_secant<S>(p, step));
+    RelativeSecant<S> const x = relative_secant<S>(step, p.element);
+    FrameSecant<S> section{{}, carried_secant<S>(step, p.element, exp_so3<S>(scaled<S>(x.phi, p.xi)))};
+    for (int i = 0; i < 3; ++i)
+      for (int node : {0, 1}) {
+        std::size_t const k = std::size_t(7 * (p.element + node) + i);
+        section.r[i] += S::variable(step.q0[k], step.q1[k], 6 * node + i) * (node == 0 ? 1.0 - p.xi : p.xi);
+      }
+    return marker_on<S>(p, axes, section);
+  }
+
   double strain_energy(Index e, std::span<double const> q) const { return elastic_.energy(e, q); }
 
   /// Strains (Γ, K) in the middle of the element of `p`, in the axes of the middle section [1], [1/m] (`HasSections`).

@@ -116,6 +116,11 @@ concept RotationInterpolation =
       { I::objective } -> std::convertible_to<bool>;  // rigid motions of both nodes move the element rigidly
     };
 
+/// Policy whose rotations are functions of the relative rotation of the nodes, R₁ exp(ξφ), as required for
+/// energy-conserving steps.
+template <class I>
+concept SecantInterpolation = requires { requires I::secants; };
+
 /// Rotation with constant curvature on the shortest path from node to node, R(ξ) = R₁ exp(ξ φ), φ = log(R₁ᵀR₂)
 /// [Crisfield & Jelenić 1999]. A rigid motion of the nodes moves the whole element rigidly, and the strains do not
 /// change. The relative rotation of the nodes of an element must be less than π. The rotation of the whole body is not
@@ -128,6 +133,7 @@ concept RotationInterpolation =
 class RelativeRotation {
  public:
   static constexpr bool objective = true;
+  static constexpr bool secants = true;
   explicit RelativeRotation(Placement const&) {}  ///< the placement has no influence
 
   /// Section in a state, with intermediate results for its derivatives.

@@ -9,7 +9,7 @@
 
 #include <polybody/bodies/rigid/rigid_marker.hpp>
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/frame_secants.hpp>
 
 namespace polybody {
 
@@ -288,6 +288,30 @@ class Rigid<UnitQuaternion> : public RigidShape {
       rows[i] += (x.a[std::size_t(i)] - g[i]) * mass_;
       rows[3 + i] += moment[i] + turning[i];
     }
+  }
+
+  /// Mean force over an energy-conserving step, −u × J Ω̄.
+  template <class T>  // compiled only if used
+  void discrete_force(Index, FrameStep const& step, Vec<T, 6>& out) const {
+    Vec<T, 3> const moment = mean_gyroscopic_moment<T>(step, 0, inertia_);
+    for (int i = 0; i < 3; ++i) {
+      out[i] = 0.0;
+      out[3 + i] = moment[i];
+    }
+  }
+  /// Tangent s K̄ of `discrete_force`.
+  template <class T>  // compiled only if used
+  void discrete_tangent(Index, FrameStep const& step, std::span<double const>, std::span<double const>, double,
+                        Mat<T, 6, 6>& k) const {
+    Mat<T, 3, 3> const block = mean_gyroscopic_tangent<T>(step, 0, inertia_);
+    k = detail::zeros<Mat<T, 6, 6>>();
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) k(3 + i, 3 + j) = block(i, j);
+  }
+  /// Frame of a marker over an energy-conserving step.
+  template <class S>
+  FrameSecant<S> discrete_marker(Point const& p, Mat3 const& axes, FrameStep const& step) const {
+    return marker_of_frame<S>(p.u, axes, frame_secant<S>(step, 0, 0));
   }
 
   /// Tangent cd (−∂f/∂Ω) with −∂f/∂Ω = Ω̃ J − (J Ω)~, where x~ is the skew-symmetric matrix of x.

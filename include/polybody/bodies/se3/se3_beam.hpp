@@ -80,6 +80,44 @@ class Se3Beam : public FrameChain {
     return element_length() * section_of(e).energy<T>(strains<T>(e, q));
   }
 
+  /// Mean force over an energy-conserving step, with the secants of (Γ, K) = (d − d₀)/l, d = (Xᵀ ρ, φ).
+  template <class T = double>  // compiled only if used
+  void discrete_force(Index e, FrameStep const& step, Vec<T, 12>& out) const {
+    using S = Secant<12>;
+    RelativeSecant<S> const relative = relative_secant<S>(step, e);
+    Vec<S, 3> const p = transposed_product<S>(right_jacobian_inverse<S>(relative.phi), relative.chord);
+    ScrewVector<double> const& d0 = free_[std::size_t(e)];
+    Vec<S, 6> strains;
+    for (int i = 0; i < 3; ++i) {
+      strains[i] = (p[i] - d0.translation[i]) / element_length();
+      strains[3 + i] = (relative.phi[i] - d0.rotation[i]) / element_length();
+    }
+    set_mean_gyroscopic(e, step, out);
+    subtract_stress(strains, section_of(e).mean_forces(strains, step.means()), out);
+  }
+  /// Tangent s K̄ of `discrete_force`: that of the state in the middle of the step, with the coordinates `q` and `zero`
+  /// velocities.
+  template <class T>  // compiled only if used
+  void discrete_tangent(Index e, FrameStep const& step, std::span<double const> q, std::span<double const> zero,
+                        double s, Mat<T, 12, 12>& k) const {
+    tangent(e, q, zero, s * (0.5 + step.decay), s / step.h, k);
+    add_mean_gyroscopic_tangent(e, step, k);
+  }
+  /// Frame of a marker over an energy-conserving step.
+  template <class S>
+  FrameSecant<S> discrete_marker(Point const& p, Mat3 const& axes, FrameStep const& step) const {
+    if (p.xi == 0.0 || p.xi == 1.0) return marker_on<S>(p, axes, node_secant<S>(p, step));
+    RelativeSecant<S> const x = relative_secant<S>(step, p.element);
+    Vec<S, 3> const part = scaled<S>(x.phi, p.xi);
+    Vec<S, 3> const d = transposed_product<S>(right_jacobian_inverse<S>(x.phi), x.chord);
+    Vec<S, 3> const along = transposed_product<S>(right_jacobian<S>(part), scaled<S>(d, p.xi));
+    FrameSecant<S> section{carried_secant<S>(step, p.element, along),
+                           carried_secant<S>(step, p.element, exp_so3<S>(part))};
+    for (int i = 0; i < 3; ++i)
+      section.r[i] += S::variable(step.q0[std::size_t(7 * p.element + i)], step.q1[std::size_t(7 * p.element + i)], i);
+    return marker_on<S>(p, axes, section);
+  }
+
   /// Strains (Γ, K) of the element of `p`, in the axes of its sections [1], [1/m] (`HasSections`).
   template <class T = double>  // compiled only if used
   Vec6 section_strains(Point const& p, std::span<T const> q) const {

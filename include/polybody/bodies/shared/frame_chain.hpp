@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/frame_secants.hpp>
 
 namespace polybody {
 
@@ -275,6 +275,41 @@ class FrameChain {
                          of_momentum = skew<T>(momentum<T>(e + i, omega));
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) k(6 * i + 3 + r, 6 * i + 3 + c) += cd * (of_omega(r, c) - of_momentum(r, c));
+    }
+  }
+
+  /// Marker p with `axes` on the section `at` of its element.
+  template <class S>
+  FrameSecant<S> marker_on(Point const& p, Mat3 const& axes, FrameSecant<S> const& at) const {
+    return marker_of_frame<S>(from_centre(p), axes, at);
+  }
+  /// Section of a node, for a point at ξ = 0 or ξ = 1.
+  template <class S>
+  static FrameSecant<S> node_secant(Point const& p, FrameStep const& step) {
+    return frame_secant<S>(step, p.element + (p.xi == 0.0 ? 0 : 1), p.xi == 0.0 ? 0 : 6);
+  }
+  /// Sets f to the mean gyroscopic moments of both nodes of element e.
+  template <class S>
+  void set_mean_gyroscopic(Index e, FrameStep const& step, Vec<S, 12>& f) const {
+    f = detail::zeros<Vec<S, 12>>();
+    for (int i = 0; i < 2; ++i) {
+      Vec<S, 3> const moment = mean_gyroscopic_moment<S>(step, e + i, rotary_of(e + i));
+      for (int k = 0; k < 3; ++k) f[6 * i + 3 + k] = moment[k];
+    }
+  }
+  /// Adds −l Σ n_i s(ε_i) to f, with the slopes s of the `strains` and the section forces `n`.
+  template <class S>
+  void subtract_stress(Vec<S, 6> const& strains, Vec6 const& n, Vec<double, 12>& f) const {
+    for (int i = 0; i < 6; ++i)
+      for (int k = 0; k < 12; ++k) f[k] -= l_ * n[i] * strains[i].d[k];
+  }
+  /// Adds the tangent of the mean gyroscopic moments of both nodes of element e to k.
+  template <class T>
+  void add_mean_gyroscopic_tangent(Index e, FrameStep const& step, Mat<T, 12, 12>& k) const {
+    for (int i = 0; i < 2; ++i) {
+      Mat<T, 3, 3> const block = mean_gyroscopic_tangent<T>(step, e + i, rotary_of(e + i));
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) k(6 * i + 3 + r, 6 * i + 3 + c) += block(r, c);
     }
   }
 

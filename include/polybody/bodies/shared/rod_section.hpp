@@ -4,6 +4,7 @@
 /// Theory: Eqs. 2.56, 2.57, 2.62, 2.108, 2.121 to 2.124.
 
 #include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/node_chain.hpp>
 #include <polybody/math/se3.hpp>
 
 namespace polybody {
@@ -70,6 +71,21 @@ class RodSection {
   template <class T = double>  // compiled only if used
   Vec<T, 6> axis_strains(Vec<T, 6> const& strains) const {
     return coupled_ ? moved<T>(strains, 0, 3) : strains;
+  }
+  /// Section forces of an energy-conserving step with the secants `strains`, without those of the axis of the bar.
+  template <class S>
+  Vec6 mean_forces(Vec<S, 6> const& strains, DiscreteDerivative const& means) const {
+    Vec6 n;
+    for (int i = 0; i < 6; ++i) {
+      S const& own = strains[i];
+      n[i] = stiffness_[i] * (own.mean() + (means.decay + time_[i] * means.rate) * own.change());
+      if (coupled_) n[i] = 0.0;
+      for (int j = 0; coupled_ && j < 6; ++j)
+        n[i] += matrix_(i, j) * (strains[j].mean() + means.decay * strains[j].change()) +
+                damper_(i, j) * means.rate * strains[j].change();
+      n[i] += coupled_ ? preload(i) : i == 0 ? pretension_ : 0.0;
+    }
+    return n;
   }
   /// Strain energy per length for the strains (Γ, K) [J/m].
   template <class T = double>  // compiled only if used
