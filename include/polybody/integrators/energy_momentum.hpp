@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Energy-conserving and energy-decaying integrators, `EnergyMomentum` and `EnergyDecaying`, with their common step.
-/// Theory: Eqs. 6.17, 6.19 to 6.21.
+/// Theory: Eqs. 6.17, 6.19 to 6.21, 6.39 to 6.43.
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -10,7 +10,7 @@
 namespace polybody {
 
 // Steps that conserve energy and momenta, and steps that dissipate energy, for a constant mass matrix M and
-// coordinates that form a vector space:
+// coordinates that form a vector space, or that are frames (bodies/shared/frame_secants.hpp):
 //   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
 // f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains ε,
 // constraint functions Φ and potentials. With the stored energy V and the elastic stiffness C,
@@ -20,8 +20,10 @@ namespace polybody {
 // With χ = 0, energy is conserved without damping, loads and drives. The linear momentum changes by the impulse of the
 // loads for every χ. The angular momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no
 // net moment. This condition holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of
-// `Continuum`, springs, and joints between points on their axes. With angles as coordinates, section frames
-// (`ElasticLine`) and joints of axes, energy is also conserved, but angular momentum only to the order of the method.
+// `Continuum`, springs, joints between points on their axes, and all joints between frames (`Rigid<>`, `Lrvf`,
+// `Se3Beam`). With angles as coordinates, section frames (`ElasticLine`) and joints of their axes, energy is also
+// conserved, but angular momentum only to the order of the method. This also holds for dampers at points outside of
+// the origin of a frame.
 // First-order states with the rates ż(q, v, z, t) use the midpoint rule, Δz = h ż(q̄, v̄, z̄, t̄).
 
 /// Step with the parameter χ, which conserves or dissipates energy. `State::a` and `State::lambda` after a step are

@@ -131,14 +131,7 @@ class TypedSecants final : public SecantOperations {
 
   /// Writes q0 + y to q1; the frames of q1 are turned by the Cayley vectors in y.
   void move(VecX const& q0, VecX const& y, VecX& q1) const override {
-    model_.for_each_body([&](auto const& e) {
-      using B = std::decay_t<decltype(e.body)>;
-      std::span<double const> const from = part_of(q0, e);
-      if constexpr (HasFrameSteps<B>)
-        plus_cayley<double>(from, velocities_of(y, e), part_of(q1, e));
-      else
-        e.body.template plus<double>(from, velocities_of(y, e), part_of(q1, e));
-    });
+    model_.for_each_body([&](auto const& e) { step_end(e.body, part_of(q0, e), velocities_of(y, e), part_of(q1, e)); });
   }
   VecX const& middle() const override { return middle_; }
 
@@ -147,11 +140,8 @@ class TypedSecants final : public SecantOperations {
   void evaluate(SecantStep const& step) override {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
-    for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
-    model_.for_each_body([&](auto const& e) {
-      if constexpr (HasFrameSteps<std::decay_t<decltype(e.body)>>)
-        frames_between<double>(part_of(*step.q0, e), part_of(*step.q1, e), part_of(middle_, e));
-    });
+    model_.for_each_body(
+        [&](auto const& e) { step_middle(e.body, part_of(*step.q0, e), part_of(*step.q1, e), part_of(middle_, e)); });
     for_each_pool_with(model_.body_pools(), bodies_,
                        [&](auto const& pool, auto& scratch) { evaluate_marker(pool, scratch); });
     for_each_pool_with(model_.joint_pools(), constraints_, [&](auto const& pool, auto& constraints) {
