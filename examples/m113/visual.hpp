@@ -2,6 +2,7 @@
 /// \file
 /// Visual shapes of the vehicle of vehicle.hpp.
 
+#include <polybody/bodies/shared/family.hpp>
 #include <polybody/io/visual.hpp>
 
 #include "vehicle.hpp"
