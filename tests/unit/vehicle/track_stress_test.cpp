@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <polybody/bodies/shared/family.hpp>
 #include <polybody/run/body_record.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/se3_beam.hpp>
