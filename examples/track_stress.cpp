@@ -309,7 +309,7 @@ void single(Options const& o) {
 }
 
 // Links of --compare matrix.
-std::vector<std::string> const matrix_links{"rigid", "ancf", "ffr", "fe", "lrvf", "se3", "beam", "continuum"};
+std::vector<std::string> const matrix_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
 
 // Results of the run of one combination; strain, force and constraint violation from the plateau on.
 struct Cell {
@@ -366,7 +366,7 @@ void show_spreads(Options const& o, std::vector<Cell> const& cells) {
                 1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), matrix_links.front().c_str());
 }
 
-// Runs every combination of links and pins.
+// Runs every combination of the links above and of pins.
 void matrix(Options o) {
   o.audit = true;
   std::printf(
