@@ -366,7 +366,7 @@ void show_spreads(Options const& o, std::vector<Cell> const& cells) {
                 1e2 * spread(cells, &Cell::turning) / std::abs(cells.front().turning), matrix_links.front().c_str());
 }
 
-// Runs every combination of links and pins.
+// Runs every combination of the links above and of pins.
 void matrix(Options o) {
   o.audit = true;
   std::printf(

@@ -10,7 +10,7 @@ import html
 import sys
 
 print("# Gallery {#site_gallery}\n")
-print("`examples/run` builds the examples, runs one after the other and draws these pictures; `examples/run NAME` one of them.\n")
+print("`examples/run` builds the examples, runs them one after the other and draws these pictures. `examples/run NAME` runs one of them.\n")
 stages = []
 for line in sys.stdin.read().splitlines():
     kind, *fields = line.split("\t")
@@ -19,7 +19,7 @@ for line in sys.stdin.read().splitlines():
     else:
         stages[-1][-1].append(fields)
 for name, shows, command, pictures in stages:
-    print(f"## {name.replace('_', ' ').capitalize()}\n\n{shows}\n")
+    print(f"## {name.replace('_', ' ').capitalize().replace(' fe', ' finite elements')}\n\n{shows}\n")
     print(f"```sh\nexamples/run {name}   # builds it, and runs: {command}\n```\n")
     if pictures:
         print("\\htmlonly\n<div class=\"gallery\">")
@@ -27,4 +27,4 @@ for name, shows, command, pictures in stages:
             print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"{caption}\"/></a><figcaption>{caption}</figcaption></figure>")
         print("</div>\n\\endhtmlonly\n")
 if not any(pictures for *_, pictures in stages):
-    print("This site was built where no example had run yet: run `examples/run`, then `docs/site/build` again.")
+    print("This site was built before any example ran. Run `examples/run`, then `docs/site/build` again.")

@@ -191,6 +191,7 @@ def page(path, text):
                 name = own if heading[1] == "#" else f"{own}_{anchor(heading[2])}"
                 line = f"{line} {{#{name}}}" if own != "site_index" or heading[1] != "#" else line
             line = "".join(part if i % 2 else LINK.sub(lambda m: link(path, m), part) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
+            line = COMMENT.sub("", line)  # Doxygen would also remove the space behind it
             line = IMAGE.sub(r"![\1](\2)", line)  # Doxygen looks for the file in IMAGE_PATH
             if has_formulas:
                 line = FORMULA.sub(lambda m: formula("span", m[1]), line)
@@ -198,6 +199,7 @@ def page(path, text):
     return "\n".join(out) + (DRAW if has_formulas else "")
 
 
+COMMENT = re.compile(r"<!--.*?-->")
 IMAGE = re.compile(r"!\[([^\]]*)\]\((?:[^)\s]*/)?([^)\s/]+)\)")
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
 

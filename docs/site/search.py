@@ -30,7 +30,8 @@ document.querySelector("input").value = words;
 if (words.trim()) {
   const index = lunr(function () {
     this.ref("address"); this.field("title", {boost: 10}); this.field("text");
-    for (const page of PAGES) this.add(page);
+    // pages of text come before classes, and classes before headers
+    for (const page of PAGES) this.add(page, {boost: /^(guide|howto|items|lessons|theory|page)_/.test(page.address) ? 6 : / File Reference$/.test(page.title) ? 0.5 : 1});
   });
   const plain = words.replace(/[:~^*+-]/g, " ").trim();
   let found = index.search(plain);
@@ -63,7 +64,7 @@ def main(folder):
         title = re.search(r"<title>(?:polybody: )?(.*?)</title>", content, re.S)
         start = content.find('<div class="contents">')
         if title and start > 0:
-            pages.append({"address": file.name, "title": plain(title[1]), "text": plain(content[start:])[:LONGEST]})
+            pages.append({"address": file.name, "title": plain(title[1]).removeprefix("polybody::"), "text": plain(content[start:])[:LONGEST]})
     (folder / "find_pages.js").write_text("const PAGES = " + json.dumps(pages, ensure_ascii=False) + ";\n", encoding="utf-8")
     (folder / "find.html").write_text(PAGE, encoding="utf-8")
 

@@ -2,6 +2,7 @@
 /// \file
 /// Visual shapes of the vehicle of vehicle.hpp.
 
+#include <polybody/bodies/shared/family.hpp>
 #include <polybody/io/visual.hpp>
 
 #include "vehicle.hpp"
@@ -80,7 +81,7 @@ bool without_bars(Link const& link) {
 
 template <class Link>
 void attach_link(Visual& visual, BodyHandle<Link> const& link, Marker<Link> const& middle) {
-  if constexpr (requires { link.at(Vec3(horn)); }) {
+  if constexpr (formulation_family<Link> == families::rigid) {
     visual.attach(middle, box({0.9 * pitch, 2.0 * half_width, 2.0 * half_thickness}), link.name);
     visual.attach(link.at(Vec3(horn)), box(horn_size), link.name + " horn");
   } else if (without_bars(link.body())) {

@@ -9,16 +9,16 @@ stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 declare -A seconds=([pendulum]=15 [robot_arm]=90 [cantilever]=25 [chain_study]=30 [tracked_vehicle]=150 [link_from_fe]=25 [track_stress]=120 [vehicle_study]=50 [identify]=45 [lighter_link]=40)
 
 declare -A shows=(
-  [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and gap of the pin [m] after two seconds."
+  [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and constraint violation [m] after two seconds."
   [robot_arm]="The flexible robot arm of Chapter 2: shapes, deflections, and energies under several formulations."
   [cantilever]="The clamped beam of Chapter 2 under a moment at its tip, up to a full circle."
-  [chain_study]="A study of 100 runs: stiffness of penalty pins, step and integrator, and what accuracy costs."
-  [tracked_vehicle]="The tracked vehicle of Chapter 3, its pins under five joint formulations."
+  [chain_study]="A study of 100 runs: stiffness of penalty pins, step, integrator, and the cost of accuracy."
+  [tracked_vehicle]="The tracked vehicle of Chapter 3 under five formulations of its pins."
   [link_from_fe]="A link of 8300 nodes from a finite element program, reduced and on its pins."
-  [track_stress]="Stresses of the vehicle's links, Chapter 4: decoupled, and by flexible links of several formulations."
+  [track_stress]="Stresses of the track links of Chapter 4: decoupled, and by flexible links of several formulations."
   [identify]="Stiffness and damping of a mount from a noisy record of the arm on it, by gradients, under four formulations."
   [lighter_link]="The lightest driven link whose stress stays bounded, by gradients, under four formulations."
-  [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
+  [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the distance travelled."
 )
 
 # command_of NAME OUT [VIEWER]: the program NAME and its options. With a VIEWER, some programs write a film.

@@ -86,9 +86,9 @@ void StressScene::show_decoupled(Options const& o) {
 }
 
 std::string links_in_words(std::string const& links) {
-  static std::map<std::string, std::string> const words{{"ancf", "ANCF cables"},   {"ffr", "FFR, modes"},
-                                                        {"fe", "finite elements"}, {"lrvf", "LRVF"},
-                                                        {"beam", "ANCF beams"},    {"continuum", "ANCF continuum"}};
+  static std::map<std::string, std::string> const words{
+      {"ancf", "ANCF cables"}, {"ffr", "FFR, modes"},  {"fe", "finite elements"},      {"lrvf", "LRVF"},
+      {"se3", "SE(3) beams"},  {"beam", "ANCF beams"}, {"continuum", "ANCF continuum"}};
   auto const found = words.find(links);
   return found != words.end() ? found->second : links;
 }

@@ -115,7 +115,7 @@ void require_turning(LinkSettings const& o, LinksOnPins const& links) {
   if (o.left != o.right && !links.turns)
     throw InvalidInput(
         "Tracks of ANCF cables cannot turn: at their pins, neighbouring links share a slope vector across the track, "
-        "which is constant in world axes. Use --body rigid, ffr, fe, lrvf, beam or continuum.");
+        "which is constant in world axes. Use --body rigid, ffr, fe, lrvf, se3, beam or continuum.");
 }
 
 std::vector<Combination> selected(LinkSettings const& o, std::string const& usual) {

@@ -15,7 +15,7 @@ m113::LinkOf<Ffr> of_finite_elements(LinkSettings const& o) {
   if (o.section != 1.0)
     throw InvalidInput(
         "--section applies to links of beams: the finite element link has the section of its files. Omit --section, "
-        "or use --body ancf, ffr, lrvf, beam or continuum.");
+        "or use --body ancf, ffr, lrvf, se3, beam or continuum.");
   return {.model = finite_element_link(o), .terms = o.terms};
 }
 

@@ -90,6 +90,7 @@ std::vector<LinksOnPins> cable_links();
 std::vector<LinksOnPins> engineering_cable_links();
 std::vector<LinksOnPins> floating_links();  // with modes, with nodal coordinates, of finite elements
 std::vector<LinksOnPins> rotation_links();
+std::vector<LinksOnPins> helicoidal_links();
 std::vector<LinksOnPins> beam_links();
 std::vector<LinksOnPins> continuum_links();
 

@@ -7,6 +7,10 @@
 
 namespace chapter3 {
 
+// True for links without deformations.
+template <class B>
+inline constexpr bool is_rigid = formulation_family<B> == families::rigid;
+
 template <class B>
 RigidLink rigid_link(BodyHandle<B> const& link) {
   return {link.name, [link](LoadRecorder& to) { to.add(link); },
@@ -18,7 +22,7 @@ RigidLink rigid_link(BodyHandle<B> const& link) {
 template <class V, class Links>
 WatchedLink watched(LinkSettings const& o, std::shared_ptr<V const> const& vehicle, Links const& links) {
   auto const link = vehicle->side(m113::Side::left).links[watched_link];
-  if constexpr (HasRigidPoints<typename V::LinkType>) {
+  if constexpr (is_rigid<typename V::LinkType>) {
     WatchedLink of{.rigid = rigid_link(link)};
     for (auto const& side : vehicle->sides)
       for (auto const& one : side.links) of.rigid_links.push_back(rigid_link(one));
@@ -70,7 +74,7 @@ LinksOnPins on_pins(BodyName const& body, NamedPolicy<P> const& policy, LinksMad
                    .enforcement = P::name},
                   B::observes != MarkerKind::axis};
   if (CompliantPolicy<P>) out.body.model += std::string(", ") + policy.name;
-  if (HasRigidPoints<B>) out.stable_step = CompliantPolicy<P> ? 2.5e-5 : 1e-4;
+  if (is_rigid<B>) out.stable_step = CompliantPolicy<P> ? 2.5e-5 : 1e-4;
   constexpr char const* refused = combinations::connect_refusal<Joint<Revolute, P>, B, B>();
   if constexpr (*refused == '\0') {
     using Model = typename m113::Vehicle<B, P, BumpCourse>::ModelType;

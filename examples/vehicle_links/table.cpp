@@ -23,8 +23,8 @@ Built built_of(LinkSettings const& o, LinksOnPins const& links) {
 std::vector<LinksOnPins> const& all_links() {
   static std::vector<LinksOnPins> const all = [] {
     std::vector<LinksOnPins> found;
-    for (auto const of_body : {rigid_links, cable_links, floating_links, rotation_links, beam_links, continuum_links,
-                               rigid_links_by_euler_parameters, engineering_cable_links})
+    for (auto const of_body : {rigid_links, cable_links, floating_links, rotation_links, helicoidal_links, beam_links,
+                               continuum_links, rigid_links_by_euler_parameters, engineering_cable_links})
       for (LinksOnPins& one : of_body()) found.push_back(std::move(one));
     return found;
   }();

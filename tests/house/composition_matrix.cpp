@@ -226,7 +226,7 @@ std::string composition() {
          "bodies. l: positions of points are not linear in the coordinates of the body.\n\n" +
          integrator_body.text("integrator") +
          "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation. m: the mass "
-         "matrix is not constant. e: the coordinates are not additive, or the mean force over a step does not "
+         "matrix is not constant. e: the mass matrix is not constant, or the mean force over a step does not "
          "exist.\n\n" +
          integrator_policy.text("integrator") +
          "\ns: the method has no stabilisation for constraint equations. m: the mass matrix of joint coordinates is "

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Opens the lessons, item pages, theory pages and class pages of the site in headless Chromium, 1280 and 390 pixels wide.
+"""Opens the lessons, item pages, theory pages, class pages and groups of the site in headless Chromium, 1280 and 390 pixels wide.
 
   tests/house/open_pages.py SITE [CHROMIUM]    SITE is the folder of the HTML pages
 
-Requires that each formula is drawn without an error, that the title fits, and that the text is not wider than the window.
+Requires that each formula is drawn without an error, that the title fits, and that the text is not wider than the window. The same
+holds for lists of members at the larger width; at the smaller one they extend to the margins.
 """
 
 import html
@@ -36,7 +37,7 @@ async function open(url, width) {
     if (cut.length) faults.push(name + "a formula is cut: " + cut[0].textContent.slice(0, 60));
     const title = page.querySelector(".title"), box = page.querySelector("#doc-content") || page.body;
     if (title.scrollWidth > title.clientWidth + 1) faults.push(name + "the title is cut");
-    for (const e of page.querySelectorAll(".contents > p, .contents > div.textblock > p, .contents > div.textblock > ul"))
+    for (const e of page.querySelectorAll(".contents > p, .contents > div.textblock > p, .contents > div.textblock > ul" + (width > 800 ? ", .memberdecls td" : "")))
       if (e.getBoundingClientRect().right > box.getBoundingClientRect().left + box.clientWidth + 1) {
         faults.push(name + "the text is wider than the window: " + e.textContent.slice(0, 60));
         break;
@@ -61,6 +62,7 @@ def main():
         return
     pages = [p for kind in ("items", "lessons", "theory") for p in sorted(site.glob(f"{kind}_*.html"))]
     pages += [p for p in sorted(site.glob("*polybody_1_1*.html")) if 'class="tex"' in p.read_text(encoding="utf-8")]
+    pages += sorted(site.glob("group__floor__*.html"))
     with tempfile.TemporaryDirectory() as folder:
         harness = Path(folder) / "open.html"
         harness.write_text(HARNESS % (json.dumps([p.as_uri() for p in pages]), json.dumps(WIDTHS)), encoding="utf-8")

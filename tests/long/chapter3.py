@@ -35,6 +35,7 @@ CASES = {
     "halved": (RUNS, VEHICLE + "--halve --until 4", lines),
     "curve": (RUNS, VEHICLE + "--turn curve --until 20", lines),
     "pivot": (RUNS, VEHICLE + "--turn pivot --speed 10 --until 20", lines),
+    "links_3": (RUNS, VEHICLE + "--body rigid,lrvf,se3 --policy constraint,penalty,bushing --until 3", lines),
     "bumps": (RUNS, VEHICLE + "--bumps", lines),
     **{
         f"by_{integrator}": (COST, VEHICLE + f"--integrator {integrator} --until 0.1", lines)

@@ -3,6 +3,8 @@
 /// Geometrically exact beam in space with one interpolation of position and rotation on SE(3).
 /// Theory: Eqs. 2.106 to 2.108, 2.117, 2.118.
 
+#include <concepts>
+
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/se3/helicoidal_section.hpp>
 #include <polybody/bodies/shared/frame_chain.hpp>
@@ -52,7 +54,7 @@ class Se3Beam : public FrameChain {
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
   /// \throws InvalidInput for s outside the bar.
-  template <class T = double>  // compiled only if used
+  template <std::floating_point T = double>  // compiled only if used
   Point at(T s, double y = 0.0, double z = 0.0) const {
     return point_at<T>(s, y, z, "Se3Beam");
   }
