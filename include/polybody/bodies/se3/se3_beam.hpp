@@ -54,7 +54,7 @@ class Se3Beam : public FrameChain {
 
   /// Point at the arc length s of the reference, and (y, z) from the axis, in the axes of the section [m].
   /// \throws InvalidInput for s outside the bar.
-  template <std::floating_point T = double>  // compiled only if used
+  template <std::convertible_to<double> T = double>  // compiled only if used
   Point at(T s, double y = 0.0, double z = 0.0) const {
     return point_at<T>(s, y, z, "Se3Beam");
   }
