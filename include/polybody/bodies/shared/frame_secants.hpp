@@ -192,4 +192,21 @@ concept HasFrameSteps =
       } -> std::same_as<FrameSecant<Secant<B::point_columns>>>;
     };
 
+/// Writes the coordinates of `body` at the end of a step with the increments y to `q1`.
+template <class B>
+void step_end(B const& body, std::span<double const> q0, std::span<double const> y, std::span<double> q1) {
+  if constexpr (HasFrameSteps<B>)
+    plus_cayley<double>(q0, y, q1);
+  else
+    body.template plus<double>(q0, y, q1);
+}
+/// Writes the coordinates of a body in the middle between `q0` and `q1` to `middle`.
+template <class B>
+void step_middle(B const&, std::span<double const> q0, std::span<double const> q1, std::span<double> middle) {
+  if constexpr (HasFrameSteps<B>)
+    frames_between<double>(q0, q1, middle);
+  else
+    for (std::size_t i = 0; i < q0.size(); ++i) middle[i] = 0.5 * (q0[i] + q1[i]);
+}
+
 }  // namespace polybody
