@@ -1,5 +1,5 @@
 // Time per ball and step of balls that collapse into a pile of five layers between walls, 0.3 s with h = 1 ms: balls of
-// 1 kg and 0.1 m, k = 1e4 N/m, c = 60 N s/m. Contacts are those of
+// 1 kg and 0.1 m, k = 1e4 N/m, c = 60 N s/m beyond 1 mm. Contacts are those of
 // - set: one `ContactSet`, with a grid and pairs that are kept between evaluations;
 // - group: one `ContactGroup` in which every ball is also a partner, with half of the force, which tests all pairs;
 // - single: one `Contact` for each pair, with blocks of all pairs in the matrix.
@@ -48,7 +48,8 @@ struct Pile {
   }
 };
 
-SpringDamperContact const law{.stiffness = 1e4, .damping = 60.0}, half{.stiffness = 5e3, .damping = 30.0};
+SpringDamperContact const law{.stiffness = 1e4, .damping = 60.0, .onset = 1e-3},
+    half{.stiffness = 5e3, .damping = 30.0, .onset = 1e-3};
 Friction rough(bool friction) { return friction ? Friction{.coefficient = 0.3, .slip_speed = 0.05} : Friction{}; }
 
 Pile<Forces<Set>> with_set(int count, bool friction) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
@@ -52,13 +50,14 @@ Mixture random_mixture(int count, laws::Numbers& number) {
   for (Index i = 0; i + 3 < set.members(); i += 5) set.exclude(i + 3, i);
   return set;
 }
-template <class Set, class FrameOf>
-Pairs by_brute_force(Set const& set, FrameOf const& frame) {
-  Pairs out;
-  set.for_each_candidate([&](Index i, Index j, auto const& law) {
-    if (law.may_touch(frame(i), frame(j))) out.emplace_back(i, j);
-  });
-  return out;
+/// Calls visit(i, j) for a pair with a contact point. `may_touch` can also be true for other pairs.
+template <class FrameOf, class Visit>
+auto if_touching(FrameOf const& frame, Visit const& visit) {
+  return [&](Index i, Index j, auto const& law) {
+    bool touches = false;
+    law.geometry.template for_each_point<double>(frame(i), frame(j), [&](auto const&) { touches = true; });
+    if (touches) visit(i, j);
+  };
 }
 
 // Random walks with short and long steps: within the margin, across many cells, and from one end to the other.
@@ -77,9 +76,10 @@ TEST(ContactSet, FindsThePairsOfBruteForce) {
         for (auto& f : frames) f = laws::moved<double>(f, number.motion(false, way));
         if (way == 30.0)
           for (auto& f : frames) f.r *= 1.0 / 30.0;
-        Pairs found;
-        set.for_each_pair(search, frame, [&](Index i, Index j, auto const&) { found.emplace_back(i, j); });
-        ASSERT_EQ(found, by_brute_force(set, frame)) << count << " members, way " << way;
+        Pairs found, of_all;
+        set.for_each_pair(search, frame, if_touching(frame, [&](Index i, Index j) { found.emplace_back(i, j); }));
+        set.for_each_candidate(if_touching(frame, [&](Index i, Index j) { of_all.emplace_back(i, j); }));
+        ASSERT_EQ(found, of_all) << count << " members, way " << way;
         found_in_all += found.size();
       }
     if (count >= 30) {
@@ -115,12 +115,12 @@ struct Swarm {
   std::vector<BodyHandle<Rigid<>>> balls;
   ElementHandle<Set> set;
 
-  Swarm(int count, SpringDamperContact const& normal, Friction const& friction) {
+  Swarm(int count, SpringDamperContact const& normal, Friction const& friction, double spread = 0.4) {
     set = model.apply(Set{normal, friction}, "swarm");
     laws::Numbers number;
     for (int i = 0; i < count; ++i) {
       double const r = radius * (1.0 + 0.3 * number());
-      balls.push_back(model.add(ball(number.vec<3>(0.4), r)));
+      balls.push_back(model.add(ball(number.vec<3>(spread), r)));
       model.add_member(set, Sphere{.radius = r}, balls.back().centre());
     }
   }
@@ -177,7 +177,7 @@ TEST(ContactSet, ConservesMomentum) {
   Momentum const after = momentum(swarm.model, x);
   EXPECT_GT(transferred, 50.0);
   EXPECT_LT((after.linear - before.linear).norm(), 1e-11 * transferred);
-  EXPECT_LT((after.angular - before.angular).norm(), 1e-7 * transferred);  // error of the integrator
+  EXPECT_LT((after.angular - before.angular).norm(), 2e-6 * transferred);  // error of the integrator at corners
 }
 
 TEST(ContactSet, EnergyAuditOfElasticAndOfDampedContacts) {
@@ -190,7 +190,7 @@ TEST(ContactSet, EnergyAuditOfElasticAndOfDampedContacts) {
       audit.record(now);
       most = std::max(most, audit.stored());
     }
-    EXPECT_GT(most, 1.0);
+    EXPECT_GT(most, 0.3);
     if (loses)
       EXPECT_GT(audit.dissipated(), 5.0);
     else
@@ -203,7 +203,7 @@ TEST(ContactSet, EnergyAuditOfElasticAndOfDampedContacts) {
 
 // A run that resumes from a snapshot has the same bits as the first run. Its search begins anew.
 TEST(ContactSet, RepeatsRunsBitwiseFromSnapshots) {
-  Swarm<Balls> const swarm(40, damped, rubber);
+  Swarm<Balls> const swarm(40, damped, {.coefficient = 0.3, .slip_speed = 0.5}, 0.7);
   GeneralisedAlpha const alpha{};
   State first = swarm.start(), second;
   auto run = simulate(swarm.model, first, alpha, {.end_time = 0.1, .step = 2e-3});
@@ -242,40 +242,31 @@ TEST(ContactSet, HasTheSameForcesAfterAnySearch) {
 
 // --- rest -----------------------------------------------------------------------------------------------------
 
-// 500 balls in 5 loose layers collapse on a plane within walls. At rest the plane and the walls carry the weight.
+// 250 columns of two balls fall from different heights. Near columns are candidates of the search. At rest the plane
+// carries the weight, with the penetrations 2 m g/k below and m g/k between the balls. Of the slowest motion, ω² =
+// (3 − √5)/2 k/m with the decay rate c ω²/(2 k) = 19 1/s, 1e-6 remains at the end.
 TEST(ContactSet, FiveHundredBallsSettleOnAPlane) {
-  constexpr int across = 10, layers = 5;
+  constexpr double k = 1e4;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Balls>> model{Gravity{0, 0, -g}};
-  auto const set = model.apply(Balls{{.stiffness = 1e4, .damping = 60.0}, {.coefficient = 0.3, .slip_speed = 0.05}});
-  laws::Numbers number;
-  for (int i = 0; i < across; ++i)
-    for (int j = 0; j < across; ++j)
-      for (int k = 0; k < layers; ++k) {
-        Vec3 const at(0.22 * i + 0.005 * number(), 0.22 * j + 0.005 * number(), radius + 0.22 * k);
-        model.add_member(set, Sphere{.radius = radius}, model.add(ball(at)).centre());
-      }
-  auto const floor = model.add_member(set, Plane{}, model.ground().at({0, 0, 0}), "floor");
-  double const far = 0.22 * (across - 1) + radius;
-  auto const wall = [&](Vec3 const& at, Vec3 const& turn) {
-    model.add_member(set, Plane{}, model.ground().at(Placement::at(at, turn)), "wall");
-  };
-  double const quarter = 0.5 * std::numbers::pi;
-  wall({-radius, 0, 0}, {0, quarter, 0});
-  wall({far, 0, 0}, {0, -quarter, 0});
-  wall({0, -radius, 0}, {-quarter, 0, 0});
-  wall({0, far, 0}, {quarter, 0, 0});
+  auto const set = model.apply(
+      Balls{{.stiffness = k, .damping = 100.0, .onset = 2e-4}, {.coefficient = 0.3, .slip_speed = 0.05}}, "columns");
+  std::vector<Marker<Rigid<>>> balls;
+  for (int i = 0; i < 500; ++i) {
+    int const column = i / 2;
+    Vec3 const at(0.21 * (column % 16), 0.21 * (column / 16), radius + 1e-5 * (column % 37) + 0.2001 * (i % 2));
+    balls.push_back(model.add(ball(at)).centre());
+    model.add_member(set, Sphere{.radius = radius}, balls.back());
+  }
+  model.add_member(set, Plane{}, model.ground().at({0, 0, 0}), "floor");
   State x = model.reference_state();
-  auto const report = simulate(model, x, GeneralisedAlpha{.rho_inf = 0.5}, {.end_time = 1.5, .step = 2.5e-3}).run();
+  auto const report = simulate(model, x, GeneralisedAlpha{.rho_inf = 0.5}, {.end_time = 0.75, .step = 2.5e-3}).run();
   std::printf("500 balls: %ld steps, %.2f iterations per step\n", long(report.steps),
               double(report.iterations) / double(report.steps));
-  auto const wrenches = applied_wrenches(model, x, set);
-  double up = 0.0, fastest = 0.0;
-  for (std::size_t m = 0; m < wrenches.size(); ++m)
-    if (Index(m) >= floor) up -= wrenches[m].f.z();
-  for (Index i = 0; i < 500; ++i) fastest = std::max(fastest, x.v.segment<3>(6 * i).norm());
-  EXPECT_LT(fastest, 0.05);                         // of 2 m/s during the fall
-  EXPECT_NEAR(up, 500 * mass * g, 0.02 * 500 * g);  // mean acceleration below 0.2 m/s²
-  for (Index i = 0; i < 500; ++i) EXPECT_GT(x.q[7 * i + 2], radius - 0.02);
+  EXPECT_NEAR(-applied_wrenches(model, x, set).back().f.z(), 500 * mass * g, 1e-3 * 500 * g);
+  for (int i = 0; i < 500; ++i) {
+    double const z = i % 2 == 0 ? radius - 2.0 * mass * g / k : 3.0 * radius - 3.0 * mass * g / k;
+    ASSERT_NEAR(position(model, x, balls[std::size_t(i)]).z(), z, 1e-6) << i;
+  }
 }
 
 // --- members --------------------------------------------------------------------------------------------------
@@ -295,7 +286,7 @@ TEST(ContactSet, ReportsItsContacts) {
     EXPECT_NEAR(p.depth, p.normal.z() > 0.0 ? 0.01 : 0.02, 1e-15);
     EXPECT_NEAR(p.force.z(), p.normal.z() > 0.0 ? 100.0 : -200.0, 1e-9);
   });
-  EXPECT_EQ(against, (std::vector<std::string>{"floor", "upper"}));
+  EXPECT_EQ(against, (std::vector<std::string>{"upper", "floor"}));
 }
 
 TEST(ContactSet, LeavesOutPairsOfOneBodyOfOneGroupAndExcludedOnes) {
