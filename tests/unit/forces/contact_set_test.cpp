@@ -201,7 +201,7 @@ TEST(ContactSet, EnergyAuditOfElasticAndOfDampedContacts) {
   }
 }
 
-// A run that resumes from a snapshot has the same bits as the first run. Its search begins anew.
+// A run that resumes from a snapshot has the same bits as the first run, although its search has found no pairs yet.
 TEST(ContactSet, RepeatsRunsBitwiseFromSnapshots) {
   Swarm<Balls> const swarm(40, damped, {.coefficient = 0.3, .slip_speed = 0.5}, 0.7);
   GeneralisedAlpha const alpha{};
@@ -250,12 +250,10 @@ TEST(ContactSet, FiveHundredBallsSettleOnAPlane) {
   Model<Bodies<Rigid<>>, Joints<>, Forces<Balls>> model{Gravity{0, 0, -g}};
   auto const set = model.apply(
       Balls{{.stiffness = k, .damping = 100.0, .onset = 2e-4}, {.coefficient = 0.3, .slip_speed = 0.05}}, "columns");
-  std::vector<Marker<Rigid<>>> balls;
   for (int i = 0; i < 500; ++i) {
     int const column = i / 2;
     Vec3 const at(0.21 * (column % 16), 0.21 * (column / 16), radius + 1e-5 * (column % 37) + 0.2001 * (i % 2));
-    balls.push_back(model.add(ball(at)).centre());
-    model.add_member(set, Sphere{.radius = radius}, balls.back());
+    model.add_member(set, Sphere{.radius = radius}, model.add(ball(at)).centre());
   }
   model.add_member(set, Plane{}, model.ground().at({0, 0, 0}), "floor");
   State x = model.reference_state();
@@ -265,7 +263,7 @@ TEST(ContactSet, FiveHundredBallsSettleOnAPlane) {
   EXPECT_NEAR(-applied_wrenches(model, x, set).back().f.z(), 500 * mass * g, 1e-3 * 500 * g);
   for (int i = 0; i < 500; ++i) {
     double const z = i % 2 == 0 ? radius - 2.0 * mass * g / k : 3.0 * radius - 3.0 * mass * g / k;
-    ASSERT_NEAR(position(model, x, balls[std::size_t(i)]).z(), z, 1e-6) << i;
+    ASSERT_NEAR(x.q[7 * i + 2], z, 1e-6) << i;
   }
 }
 
