@@ -114,7 +114,8 @@ class ContactSet<Shapes<Ss...>, N, F> {
     PairSearch search;
     for_each_pair(search, frame, visit);
   }
-  /// Overload that keeps the near pairs in `search` between evaluations.
+  /// Overload that keeps the near pairs in `search` between evaluations, and calls visit(i, j, law). frame(k) is
+  /// the frame of marker k.
   template <class FrameOf, class Visit>
   void for_each_pair(PairSearch& search, FrameOf&& frame, Visit&& visit) const {
     update(search, frame);

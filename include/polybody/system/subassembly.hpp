@@ -73,7 +73,8 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ElementHandle<F> apply(F const& set, std::string name = "") {
     return detail::add_group(parts_, forces_of<F>(), set, Sequence<detail::PooledMarker<Ground>>{}, std::move(name));
   }
-  /// Adds a member to a contact set, like `Model::add_member`.
+  /// Adds a member, a `shape` at the marker `at`, to a contact set, like `Model::add_member`. `group` is the number of
+  /// its group.
   template <OneOf<Fs...> F, class S, class A>
     requires SearchingForceGroup<F>
   Index add_member(ElementHandle<F> const& set, S const& shape, Marker<A> const& at, std::string name = "",
