@@ -136,10 +136,27 @@ def contact_group():
     return s
 
 
+def contact_set():
+    s = Sketch("Contact set", origin=(210, 150))
+    s.ground((-3.2, -1.2), (3.2, -1.2))
+    balls = [(-1.6, -0.6, 0.6), (-0.4, -0.6, 0.6), (0.7, -0.7, 0.5), (-1.0, 0.44, 0.6), (0.25, 0.3, 0.45)]
+    for x, y, r in balls:
+        s.pivot((x, y), r, BLUE)
+    for a, b in [(0, 1), (1, 2), (0, 3), (1, 3), (1, 4), (2, 4)]:
+        (xa, ya, ra), (xb, yb, rb) = balls[a], balls[b]
+        part = ra / (ra + rb)
+        s.pivot((xa + part * (xb - xa), ya + part * (yb - ya)), 0.06, RED)
+    for x, _, _ in balls[:3]:
+        s.pivot((x, -1.2), 0.06, RED)
+    s.text((2.2, 0.3), "members: balls", "#2f6fa8", 14)
+    s.text((2.0, -1.75), "member: plane", "#555555", 14)
+    return s
+
+
 DRAWINGS = {
     name: globals()[name]
     for name in [
         "gravity", "point_force", "point_moment", "distributed_force", "spring_damper", "axial_spring", "maxwell_element", "user_force", "contact",
-        "contact_group",
+        "contact_group", "contact_set",
     ]
 }

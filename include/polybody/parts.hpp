@@ -5,6 +5,7 @@
 
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/bristle_friction.hpp>
+#include <polybody/forces/contact_set.hpp>
 #include <polybody/forces/differential.hpp>
 #include <polybody/forces/friction_laws.hpp>
 #include <polybody/forces/limits.hpp>

@@ -1,6 +1,7 @@
 // Contact shapes with invalid or extreme parameters: an error names the parameter, or ten steps give finite numbers.
 #include <gtest/gtest.h>
 
+#include <polybody/forces/contact_set.hpp>
 #include <polybody/forces/shapes/compound.hpp>
 
 #include "runs.hpp"
@@ -47,6 +48,29 @@ TEST(HostileParameters, OfContactBoxes) {
           .size_a = {0.3, 0.3, 0.4}, .rounding_a = 0.02, .size_b = {0.5, 0.5, 0.38}, .rounding_b = 0.02, .taper = 1e-4},
       "BoxOnBox");
   std::cout << tried << " parameters of boxes\n";
+}
+template <class S>
+void lie_together(S const& shape) {
+  using Set = ContactSet<Shapes<S, Sphere>>;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Set>> model{Gravity{0, 0, -9.81}};
+  auto const body = model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.3).asDiagonal(), Placement::at({0, 0, 0.38})), "body");
+  auto const set = model.apply(Set{pads, rough}, "hostile");
+  model.add_member(set, shape, body.at(Vec3(0, 0, 0)), "hostile");
+  model.add_member(set, Sphere{.radius = 0.2}, model.ground().at({0, 0, 0}));
+  run_ten_steps(model, GeneralisedAlpha{});
+}
+/// Capsule or box, with its own type in the list of the shapes of the set.
+template <class S>
+int try_member(S const& sane, std::string const& type) {
+  EXPECT_NO_THROW(lie_together(sane)) << type;
+  return try_hostile(sane, type, lie_together<S>);
+}
+TEST(HostileParameters, OfMembersOfContactSets) {
+  int tried = 0;
+  tried += try_hostile(Sphere{.radius = 0.19}, "Sphere", [](Sphere const& s) { s.check("\"hostile\""); });
+  tried += try_member(Capsule{.radius = 0.19, .length = 0.5, .taper = 1e-4}, "Capsule");
+  tried += try_member(Box{.size = {0.3, 0.3, 0.38}, .rounding = 0.02, .taper = 1e-4}, "Box");
+  std::cout << tried << " parameters of members\n";
 }
 // The placements of a compound are checked, and so are its shapes.
 TEST(HostileParameters, OfCompounds) {

@@ -80,6 +80,14 @@ inline constexpr auto words_of<BoxOnBox> =
     words("size of the first|rounding of the first", "rounding of the first",
           "size of the second|rounding of the second", "rounding of the second", "taper");
 
+// shapes of contact sets
+template <>
+inline constexpr auto words_of<Sphere> = words("radius");
+template <>
+inline constexpr auto words_of<Capsule> = words("radius", "length", "taper");
+template <>
+inline constexpr auto words_of<Box> = words("size|rounding", "rounding", "taper");
+
 // contacts of vehicles
 template <>
 inline constexpr auto words_of<FlatGround> = words("height");

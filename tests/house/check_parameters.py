@@ -19,6 +19,8 @@ NOTHING_TO_TRY = {
     "UserForce": "its law is a function",
     "UserForceWithStates": "its law is a function",
     "ContactGroup": "it calls the checks of its laws",
+    "ContactSet": "it calls the checks of its laws",
+    "Plane": "it has no parameters",
     "Compound": "it calls the checks of its geometries and placements: tests/hostile/contact_shapes_test.cpp",
     "NonlinearBushing": "it calls the checks of its laws, which are tried through it",
     "Continuum": "it looks at a Bar, which is tried through every body",

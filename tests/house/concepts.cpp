@@ -18,6 +18,7 @@
 #include <polybody/forces/belt.hpp>
 #include <polybody/forces/bristle_friction.hpp>
 #include <polybody/forces/contact.hpp>
+#include <polybody/forces/contact_set.hpp>
 #include <polybody/forces/differential.hpp>
 #include <polybody/forces/limits.hpp>
 #include <polybody/forces/loads.hpp>
@@ -74,6 +75,7 @@ static_assert(ContactGeometry<BoxOnPlane> && ContactGeometry<CapsuleOnPlane> && 
 static_assert(ContactGeometry<SphereOnBox> && ContactGeometry<CapsuleOnBox> && ContactGeometry<BoxOnBox>);
 static_assert(ContactGeometry<CapsuleOnSphere> && ContactGeometry<CapsuleOnCapsule>);
 static_assert(ContactGeometry<Compound<BoxOnPlane, CapsuleOnPlane>>);
+static_assert(SearchingForceGroup<ContactSet<Shapes<Sphere, Capsule, Box, Plane>>> && !BoundedShape<Plane>);
 static_assert(HasStatePotential<Contact<SphereOnPlane, SpringDamperContact, BristleFriction>>);
 static_assert(ScalarLaw<DryFriction> && ScalarLaw<LuGreFriction>);
 static_assert(ForceElement<SphericalFriction> && HasStatePotential<SphericalBristleFriction>);

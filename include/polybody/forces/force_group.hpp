@@ -48,6 +48,13 @@ concept PartitionedForceGroup = ForceGroup<F> && requires(F const group) {
   group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{}, Index(0), Index(0));  // for i in [begin, end)
 };
 
+/// Force group that finds its pairs by a search. A `F::Search` keeps the result between evaluations, so that an
+/// evaluation searches only after sufficient motion.
+template <class F>
+concept SearchingForceGroup = ForceGroup<F> && requires(F const group, typename F::Search search) {
+  group.for_each_pair(search, detail::AnyFrame{}, detail::AnyVisit{});
+};
+
 /// Force of a model: a force element or a group.
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;

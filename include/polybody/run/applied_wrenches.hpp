@@ -87,12 +87,14 @@ double power(System const& system, State const& x, ElementHandle<J> const& joint
 
 /// Contact point in a state.
 struct TouchingPoint {
-  Index body;  ///< index of the body's marker among the `many()` markers of the group; 0 for one contact
-  std::string const* against;  ///< name of the partner in the contact; for one contact, its own name
-  Vec3 place;                  ///< (3) position, world axes [m]
-  Vec3 normal;                 ///< (3) unit vector towards the body
-  double depth;                ///< penetration [m]
-  Vec3 force;                  ///< (3) contact force on the body [N]
+  Index body;  ///< number of the body's marker among the `many()` markers of a group or the members of a set; 0 for one
+               ///< contact
+  std::string const*
+      against;   ///< name of the partner or the second member in the contact; for one contact, its own name
+  Vec3 place;    ///< (3) position, world axes [m]
+  Vec3 normal;   ///< (3) unit vector towards the body
+  double depth;  ///< penetration [m]
+  Vec3 force;    ///< (3) contact force on the body [N]
 };
 
 using TouchingPointVisit = std::function<void(TouchingPoint const&)>;  ///< called for each contact point
@@ -130,6 +132,10 @@ void for_each_contact(System const& system, ElementHandle<F> const& group, Touch
     } else {
       detail::visit_touching(contact, {frame(0), frame(1)}, 0, place.name, visit);
     }
+  } else if constexpr (SearchingForceGroup<F>) {
+    contact.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
+      detail::visit_touching(law, {frame(i), frame(j)}, i, contact.name_of(j), visit);
+    });
   } else {
     for (Index body = 0; body < contact.many(); ++body)
       contact.for_each_partner([&](auto const& few) {

@@ -304,7 +304,7 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   parts.force_names.require_free(name, "force");
   parts.origin.change();
   for (PooledMarker<B> const& m : many) entry.markers.push_back(publish_at(parts, m, identity()));
-  entry.force.set_many(Index(many.size()));
+  if constexpr (requires { entry.force.set_many(0); }) entry.force.set_many(Index(many.size()));
   pool.push_back(std::move(entry));
   parts.force_names.take(name);
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
@@ -322,6 +322,32 @@ void add_contact_partner(ModelParts& parts, ForceEntry<F>& group, Law const& law
   parts.origin.change();
   group.markers.push_back(publish_at(parts, one, identity()));
   group.force.add_partner(law, Index(group.markers.size()) - 1, std::move(name));
+}
+
+/// Adds a member to a contact set. Returns its number. \throws InvalidInput for an invalid shape or marker; the message
+/// names the set.
+template <class F, class S, class B>
+Index add_member(ModelParts& parts, ForceEntry<F>& set, S const& shape, PooledMarker<B> const& at, std::string name,
+                 int group) {
+  require_own(parts, at, set.name);
+  name = name_or_next(std::move(name), "member", set.markers.size());
+  shape.check(sentence_of({"\"", set.name, "\", \"", name, "\""}));
+  require_observed(at.marker, S::needs, set.name);
+  parts.origin.change();
+  set.markers.push_back(publish_at(parts, at, identity()));
+  set.force.add_member(shape, first_speed(at), group, std::move(name));
+  return set.force.members() - 1;
+}
+
+/// Excludes the contact of two members of a contact set. \throws InvalidInput for a number outside of the set.
+template <class F>
+void exclude_members(ModelParts& parts, ForceEntry<F>& set, Index m, Index n) {
+  for (Index const k : {m, n})
+    if (k < 0 || k >= set.force.members())
+      throw InvalidInput("contact.member", {"\"", ErrorObject{set.name}, "\": the number of a member must lie in [0, ",
+                                            int(set.force.members()) - 1, "], but is ", ErrorValue{int(k)}, "."});
+  parts.origin.change();
+  set.force.exclude(m, n);
 }
 
 /// Refuses at compile time a joint that cannot connect markers of A and B.

@@ -166,6 +166,13 @@ struct Data {
   static constexpr Index least_batches = 16;   ///< least number of SIMD vectors of elements per thread
   static constexpr Index least_markers = 128;  ///< least number of markers per thread
 
+  /// Pairs of a force group that a search has found.
+  struct FoundPairs {
+    Index marker = 0;              ///< number of the first marker of the group
+    std::shared_ptr<void> search;  ///< the `Search` of the group's type
+  };
+  Sequence<FoundPairs> found_pairs;  ///< pairs of each `SearchingForceGroup`
+
   std::shared_ptr<void> kept;  ///< arrays that depend on the types of bodies and joints: poses, constraint functions
 
   Data() = default;

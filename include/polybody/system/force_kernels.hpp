@@ -5,37 +5,9 @@
 
 #include <concepts>
 
-#include <polybody/math/sequence.hpp>
 #include <polybody/system/active_contact_pairs.hpp>
-#include <polybody/system/data.hpp>
 #include <polybody/system/force_gradients.hpp>
-#include <polybody/system/pools.hpp>
-
-namespace polybody::detail {
-
-/// Frames of a force group's markers in doubles, from which the group selects its active pairs. operator()(k) returns
-/// the frame of marker k of the group.
-template <class F, StateScalar T>
-class PairFrames {
- public:
-  PairFrames(ForceEntry<F> const& e, Data<T> const& data) : e_(e), data_(data) {
-    if constexpr (!std::same_as<T, double>)
-      for (Index const at : e.markers) values_.push_back(values_of(data.markers[std::size_t(at)].frame));
-  }
-  Frame<double> const& operator()(Index k) const {
-    if constexpr (std::same_as<T, double>)
-      return data_.markers[std::size_t(e_.markers[std::size_t(k)])].frame;
-    else
-      return values_[std::size_t(k)];
-  }
-
- private:
-  ForceEntry<F> const& e_;
-  Data<T> const& data_;
-  Sequence<Frame<double>> values_;
-};
-
-}  // namespace polybody::detail
+#include <polybody/system/group_pairs.hpp>
 
 namespace polybody {
 
@@ -59,8 +31,7 @@ void with_law(ForceEntry<F> const& e, T const* multipliers, Use&& use) {
 template <class F, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<T> const& data, T const* multipliers, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
-    PairFrames<F, T> const frame(e, data);
-    e.force.for_each_pair(frame, [&](Index i, Index j, auto const& law) {
+    for_each_pair_of(e, data, [&](Index i, Index j, auto const& law) {
       visit(law, std::array{i, j}, std::array{e.markers[std::size_t(i)], e.markers[std::size_t(j)]});
     });
   } else {
@@ -241,6 +212,8 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
             std::max(data.scratch.size(), std::size_t(F::multipliers * data.markers[std::size_t(k)].columns)));
     }
     data.own_stiffness.resize(std::max(data.own_stiffness.size(), e.markers.size()));
+    if constexpr (SearchingForceGroup<F>)
+      if (!e.markers.empty()) data.found_pairs.push_back({e.markers[0], std::make_shared<typename F::Search>()});
     ++owner;
   }
 }

@@ -144,12 +144,38 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a
   /// duplicate name, a marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
-    requires ForceGroup<F>
+    requires(ForceGroup<F> && !SearchingForceGroup<F>)
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= F::needs)>();
     Sequence<detail::PooledMarker<A>> pooled_many;
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
+  }
+  /// Applies a contact set. `add_member` adds its members. \throws InvalidInput for a duplicate name or invalid
+  /// parameters.
+  template <OneOf<Fs...> F>
+    requires SearchingForceGroup<F>
+  ElementHandle<F> apply(F const& set, std::string name = "") {
+    return detail::add_group(parts_, pool_of<F>(), set, Sequence<detail::PooledMarker<Ground>>{}, std::move(name));
+  }
+  /// Adds a member to a contact set: a shape at the marker `at`. Returns the number of the member, for `exclude`.
+  /// Members of the same positive `group` have no contact with each other. \throws InvalidInput for a handle or marker
+  /// of another model or an invalid shape.
+  template <OneOf<Fs...> F, class S, class A>
+    requires SearchingForceGroup<F>
+  Index add_member(ElementHandle<F> const& set, S const& shape, Marker<A> const& at, std::string name = "",
+                   int group = 0) {
+    detail::require_kinematics<(Marker<A>::observes >= S::needs)>();
+    (void)entry(set);
+    return detail::add_member(parts_, pool_of<F>()[std::size_t(set.index)], shape, pooled(at), std::move(name), group);
+  }
+  /// Excludes the contact of two members of a contact set, by their numbers m and n. \throws InvalidInput for a handle
+  /// of another model or an invalid number.
+  template <OneOf<Fs...> F>
+    requires SearchingForceGroup<F>
+  void exclude(ElementHandle<F> const& set, Index m, Index n) {
+    (void)entry(set);
+    detail::exclude_members(parts_, pool_of<F>()[std::size_t(set.index)], m, n);
   }
   /// Refuses a force whose type is not in the model's list, for any `others`.
   template <class F, class... Rest>
@@ -171,7 +197,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Adds a contact partner at marker `one`, which interacts with all of the group's many markers by `law`. The group
   /// must list the type of `law`. \throws InvalidInput for a handle or marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class Law, class A>
-    requires ForceGroup<F>
+    requires(ForceGroup<F> && !SearchingForceGroup<F>)
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
     (void)entry(group);

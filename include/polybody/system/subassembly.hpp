@@ -51,7 +51,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
   /// Applies a force group to its many markers, like `Model::apply`.
   template <OneOf<Fs...> F, class A>
-    requires ForceGroup<F>
+    requires(ForceGroup<F> && !SearchingForceGroup<F>)
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= F::needs)>();
     Sequence<detail::PooledMarker<A>> pooled_many;
@@ -60,11 +60,36 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   }
   /// Adds a contact partner with the contact law `law` at marker `one` to a force group, like `Model::add_partner`.
   template <OneOf<Fs...> F, class Law, class A>
-    requires ForceGroup<F>
+    requires(ForceGroup<F> && !SearchingForceGroup<F>)
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
     (void)detail::own_entry(forces_of<F>(), group);
     detail::add_contact_partner(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+  }
+
+  /// Applies a contact set, like `Model::apply`.
+  template <OneOf<Fs...> F>
+    requires SearchingForceGroup<F>
+  ElementHandle<F> apply(F const& set, std::string name = "") {
+    return detail::add_group(parts_, forces_of<F>(), set, Sequence<detail::PooledMarker<Ground>>{}, std::move(name));
+  }
+  /// Adds a member, a `shape` at the marker `at`, to a contact set, like `Model::add_member`. `group` is the number of
+  /// its group.
+  template <OneOf<Fs...> F, class S, class A>
+    requires SearchingForceGroup<F>
+  Index add_member(ElementHandle<F> const& set, S const& shape, Marker<A> const& at, std::string name = "",
+                   int group = 0) {
+    detail::require_kinematics<(Marker<A>::observes >= S::needs)>();
+    (void)detail::own_entry(forces_of<F>(), set);
+    return detail::add_member(parts_, forces_of<F>()[std::size_t(set.index)], shape, pooled(at), std::move(name),
+                              group);
+  }
+  /// Excludes the contact of the members m and n of a contact set, like `Model::exclude`.
+  template <OneOf<Fs...> F>
+    requires SearchingForceGroup<F>
+  void exclude(ElementHandle<F> const& set, Index m, Index n) {
+    (void)detail::own_entry(forces_of<F>(), set);
+    detail::exclude_members(parts_, forces_of<F>()[std::size_t(set.index)], m, n);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/forces/contact_set.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/system/active_contact_pairs.hpp>
 #include <polybody/testing/differences.hpp>
@@ -199,6 +200,16 @@ TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
                                {.stiffness = 1e4, .damping = 300.0},
                                Friction{.coefficient = 0.4, .slip_speed = 0.5}},
                         two.of_b(), "other ball");
+  expect_exact_with_rates(two.model);
+}
+
+TEST(ExactTangents, AreThoseOfContactSets) {
+  using Set = ContactSet<Shapes<Sphere, Capsule>, HuntCrossleyContact>;
+  TwoThatTurn<Model<Bodies<Rigid<>>, Joints<>, Forces<Set>>> two;
+  auto const set =
+      two.model.apply(Set{{.stiffness = 1e4, .damping = 0.3}, Friction{.coefficient = 0.4, .slip_speed = 0.5}}, "set");
+  two.model.add_member(set, Sphere{.radius = 0.5}, two.of_a());
+  two.model.add_member(set, Capsule{.radius = 0.6, .length = 0.3, .taper = 0.01}, two.of_b());
   expect_exact_with_rates(two.model);
 }
 

@@ -11,6 +11,7 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
+#include <polybody/forces/contact_set.hpp>
 #include <polybody/forces/springs.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
@@ -163,6 +164,27 @@ struct FallingBalls {
   auto const& model() const { return balls; }
 };
 
+/// Members of a contact set that fall onto a plane and onto each other, with friction, faster than the margin of the
+/// search in each step.
+struct FallingSet {
+  using Set = ContactSet<Shapes<Sphere, Capsule, Plane>>;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<Set>> balls{Gravity{0, 0, -2e6}};
+
+  FallingSet() {
+    auto const set =
+        balls.apply(Set{{.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, {.coefficient = 0.3, .slip_speed = 0.05}});
+    for (int i = 0; i < 30; ++i) {
+      auto const body = balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.02 * i, 0, 0.1 + 0.21 * i})));
+      if (i % 3 == 0)
+        balls.add_member(set, Capsule{.radius = 0.1, .length = 0.1, .taper = 1e-3}, body.centre());
+      else
+        balls.add_member(set, Sphere{.radius = 0.1}, body.centre());
+    }
+    balls.add_member(set, Plane{}, balls.ground().at({0, 0, 0}));
+  }
+  auto const& model() const { return balls; }
+};
+
 /// A floating frame of six modes with geometric stiffening on a pin, and a second one at the end of the first. The
 /// size of these bodies is known at run time.
 template <class Policy>
@@ -309,6 +331,12 @@ TEST(NoAllocation, InAStepOfAGroupOfContacts) {
   EXPECT_EQ(in_steps<FallingBalls>(GeneralisedAlpha{}), 0);
   EXPECT_EQ(in_steps<FallingBalls>(GeneralisedAlpha{.second_order_terms = true}), 0);
   EXPECT_EQ(in_steps<FallingBalls>(RungeKutta4<>{}), 0);
+}
+
+TEST(NoAllocation, InAStepOfAContactSet) {
+  EXPECT_EQ(in_steps<FallingSet>(GeneralisedAlpha{}), 0);
+  EXPECT_EQ(in_steps<FallingSet>(GeneralisedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<FallingSet>(RungeKutta4<>{}), 0);
 }
 
 TEST(NoAllocation, InAStepOfAFloatingFrame) {
