@@ -21,8 +21,7 @@
 #include <optional>
 
 #include <polybody/integrators/alpha_vectors.hpp>
-#include <polybody/integrators/newton_failure.hpp>
-#include <polybody/integrators/step_history.hpp>
+#include <polybody/integrators/island_steps.hpp>
 #include <polybody/integrators/step_tangent.hpp>
 #include <polybody/math/sequence.hpp>
 
@@ -46,6 +45,7 @@ struct AlphaMethod {
     StepCheck check;                           ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
     double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
+    IslandSteps<AlphaMethod, Solver> islands;  ///< islands of the model, for steps that solve them apart
 
     /// Allocates the vectors and `forward`; `analyse` allocates the tangent.
     explicit Workspace(System& s)
@@ -85,6 +85,7 @@ struct AlphaMethod {
     append_multipliers(system, x);
     StepHistory::reset(x);
     w.reused_factorisation.usable = false;
+    w.islands.forget();
     if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
   }
@@ -92,7 +93,7 @@ struct AlphaMethod {
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     (void)start_step(system, x, h, w);
-    return advance(system, x, h, w);
+    return w.islands.active() ? advance_apart(system, x, h, w) : advance(system, x, h, w);
   }
 
   /// Stores v₀ and a₀ of a step of h [s] from x in w. With `start_correction`, corrects them and returns true if v and
@@ -116,6 +117,9 @@ struct AlphaMethod {
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
  private:
+  template <class, class>
+  friend class IslandSteps;
+
   /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
 
@@ -175,18 +179,9 @@ struct AlphaMethod {
                               .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
-  /// Right-hand side of a correction: −r, and the scaled violations of the constraint equations or their rates, with
-  /// opposite sign.
-  void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic_equations,
+  void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic,
                        AlphaVectors& w) const {
-    Index const nv = w.v.size(), rows = w.phi.size();
-    double const *const r = w.r.data(), *const open = (both_multiplier_sets ? w.rate : w.phi).data();
-    double *const rhs = w.rhs.data(), *const of_rows = rhs + nv;
-    for_each_simd_block(nv, [=](auto at) { at.set(rhs, -at(r)); });
-    double const scale = -1.0 / (both_multiplier_sets ? h * gamma : beta * h * h);
-    for_each_simd_block(rows, [=](auto at) { at.set(of_rows, scale * at(open)); });
-    if (!both_multiplier_sets)
-      for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
+    w.make_right_hand_side(beta * h * h, gamma * h, both_multiplier_sets, nonholonomic);
   }
 
   /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns −1 on
@@ -296,7 +291,6 @@ struct AlphaMethod {
   /// a stabilised step, a last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
-    StepHistory history(x);
     bool const careful = effort > 0;
     guess(x, h, careful, w);
     bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
@@ -325,6 +319,8 @@ struct AlphaMethod {
     NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
+      if (effort == 0 && w.islands.begin(*this, system, w))
+        return detail::retried(w.check.failed, report, [&] { return advance_apart(system, x, h, w); });
       w.tangent.include(system, w.lambda);
       w.reused_factorisation.usable = false;
       return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
@@ -344,13 +340,27 @@ struct AlphaMethod {
     if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
       w.forward.note_doubt();
-    history.push(x, h, w.a);
+    if (w.islands.pays(report, options)) (void)w.islands.begin(*this, system, w);
+    return accept(x, h, w), step;
+  }
+  /// Performs one step from x, in which each island has its own iterations and halvings. x changes only if each of them
+  /// converges. The global factorisation is then outdated.
+  template <class Solver>
+  StepReport advance_apart(System& system, State& x, double h, Workspace<Solver>& w) const {
+    StepReport const step = w.islands.step(*this, system, x, h, w);
+    detail::count_if_failed(w.check.failed, step,
+                            [&] { w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h}); });
+    w.reused_factorisation.usable = false;
+    return accept(x, h, w), step;
+  }
+  /// Stores the end of a step in x.
+  static void accept(State& x, double h, AlphaVectors& w) {
+    StepHistory(x).push(x, h, w.a);
     x.q.swap(w.q);
     x.v.swap(w.v);
     x.a.swap(w.vd);
     x.lambda.swap(w.lambda);
     x.t += h;
-    return step;
   }
 
   /// Corrects v₀ and a₀ for a change of the step from h_old to h_new. The a and v of the method differ from those of
