@@ -22,6 +22,8 @@
 
 #include <polybody/integrators/alpha_vectors.hpp>
 #include <polybody/integrators/island_steps.hpp>
+#include <polybody/integrators/jerk_at_start.hpp>
+#include <polybody/integrators/line_search.hpp>
 #include <polybody/integrators/step_tangent.hpp>
 #include <polybody/math/sequence.hpp>
 
@@ -86,7 +88,7 @@ struct AlphaMethod {
     StepHistory::reset(x);
     w.reused_factorisation.usable = false;
     w.islands.forget();
-    if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
+    if (start_correction && corrected != false && corrected.value_or(detail::jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
   }
 
@@ -150,24 +152,21 @@ struct AlphaMethod {
   /// Adds the fraction `part` of the correction y: the first entries of y to a, and the others to λ. v̇, v and Δq
   /// change accordingly. \param both_multiplier_sets true if the step has μ besides λ
   void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
-    if (part != 1.0) {
-      w.y *= part;
-      if (both_multiplier_sets) w.back *= part;
-    }
     double const of_vd = mass(), of_v = h * gamma, of_dq = beta * h * h;
     double const* const y = w.y.data();
     double *const a = w.a.data(), *const vd = w.vd.data(), *const v = w.v.data(), *const dq = w.dq.data();
     for_each_simd_block(w.v.size(), [=](auto at) {
-      auto const da = at(y);
+      auto const da = part * at(y);
       at.set(a, at(a) + da);
       at.set(vd, at(vd) + of_vd * da);
       at.set(v, at(v) + of_v * da);
       at.set(dq, at(dq) + of_dq * da);
     });
-    if (both_multiplier_sets) w.dq += w.back;
+    if (both_multiplier_sets)
+      for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] += part * w.back[i];
     double const* const of_lambda = y + w.v.size();
     double* const lambda = w.lambda.data();
-    for_each_simd_block(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + at(of_lambda)); });
+    for_each_simd_block(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + part * at(of_lambda)); });
   }
   CorrectionSize measure(double h, bool both_multiplier_sets, AlphaVectors const& w) const {
     Index const bodies = w.v.size() - w.states;
@@ -204,6 +203,7 @@ struct AlphaMethod {
     double h, look_ahead;  ///< step [s]; fraction of a factorisation's expected use at which its tangent is evaluated
     bool both_multiplier_sets, recomputes_held, surrogate_friction;  ///< the first is true if the step has μ besides λ
     Index bad = -1;
+    double applied = 1.0;  ///< applied part of the last correction
 
     StepPosition place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
     bool evaluate() { return evaluate_at(w.dq); }
@@ -248,7 +248,22 @@ struct AlphaMethod {
     }
     AndersonAcceleration& acceleration() { return w.acceleration; }
     VecX& correction() { return w.y; }
-    void apply(double part) { method.apply(part, h, both_multiplier_sets, w); }
+    void apply(double part) { method.apply(applied = part, h, both_multiplier_sets, w); }
+    bool search(int& count) {
+      if (w.lambda.size() > 0) return evaluate();  // the product y·rhs does not decrease with multipliers
+      double const before = w.y.dot(w.rhs);
+      if (!evaluate()) return false;
+      double const after = w.y.dot(w.rhs), full = applied;
+      if (!(before > 0.0) || after >= -0.5 * before) return true;
+      bool finite = true;
+      count += detail::search_line(before, after, [&](double s) {
+        method.apply(s * full - applied, h, false, w);
+        applied = s * full;
+        finite = evaluate();
+        return finite ? w.y.dot(w.rhs) : std::numeric_limits<double>::quiet_NaN();
+      });
+      return finite;
+    }
     /// True if a correction of this `norm` (root mean square of accelerations) moves the bodies further within the step
     /// than their velocities move them.
     bool is_far_from_solution(double norm) const {
@@ -343,8 +358,8 @@ struct AlphaMethod {
     if (w.islands.pays(report, options)) (void)w.islands.begin(*this, system, w);
     return accept(x, h, w), step;
   }
-  /// Performs one step from x, in which each island has its own iterations and halvings. x changes only if each of them
-  /// converges. The global factorisation is then outdated.
+  /// Performs one step from x, in which each island has its own iterations and halvings. x changes only if all
+  /// converge.
   template <class Solver>
   StepReport advance_apart(System& system, State& x, double h, Workspace<Solver>& w) const {
     StepReport const step = w.islands.step(*this, system, x, h, w);
@@ -353,13 +368,10 @@ struct AlphaMethod {
     w.reused_factorisation.usable = false;
     return accept(x, h, w), step;
   }
-  /// Stores the end of a step in x.
   static void accept(State& x, double h, AlphaVectors& w) {
     StepHistory(x).push(x, h, w.a);
-    x.q.swap(w.q);
-    x.v.swap(w.v);
-    x.a.swap(w.vd);
-    x.lambda.swap(w.lambda);
+    x.q.swap(w.q), x.v.swap(w.v);
+    x.a.swap(w.vd), x.lambda.swap(w.lambda);
     x.t += h;
   }
 
@@ -382,28 +394,6 @@ struct AlphaMethod {
     for (Index i = 0; i < w.jerk.size(); ++i) w.jerk[i] = c * w.jerk[i] + (w.v[i] - w.a[i]) / (12.0 * h_new);
     w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
     for (Index i = 0; i < w.v0.size(); ++i) w.v0[i] += (h_new * h_new - h_old * h_old) * w.v[i];
-  }
-
-  /// Computes q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. Returns false if
-  /// the two results disagree, or if the acceleration at x.t + h changes by more than ½ h ‖q⃛‖ when the motion is
-  /// extrapolated with this q⃛ instead of zero. In an oscillator the second case occurs for ωh above 1.7; after an
-  /// impulse, stiff components dominate q⃛. Steps of h then do not resolve the motion; a correction would add noise.
-  template <class Solver>
-  bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
-    w.jerk.setZero();
-    auto const acceleration_after = [&](double e) {
-      w.follow(x, e);
-      system.plus(x.q, w.dq, w.q);
-      VecX a = x.a;
-      w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.rate);
-      return a;
-    };
-    VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
-    if (!w.find_jerk(x.a, quarter, half, full, h)) return false;
-    VecX change = acceleration_after(h);
-    for (Index i = 0; i < change.size(); ++i) change[i] -= full[i];
-    return w.of_each_part(
-        [&](Index first, Index end) { return w.norm(change, first, end) <= 0.5 * h * w.norm(w.jerk, first, end); });
   }
 };
 

@@ -23,13 +23,13 @@ class IslandSteps {
   bool active() const { return left_ > 0; }
   /// Number of islands; zero before the first separation, and for a model with one island.
   std::size_t count() const { return islands_.size(); }
-  /// Discards the factorisations, at a start of the integrator.
+  /// Discards the data of earlier steps, at a start of the integrator.
   void forget() {
-    for (Island& island : islands_) island.work->reused_factorisation.usable = false;
+    for (Island& island : islands_) island.hard = island.work->reused_factorisation.usable = false;
   }
 
-  /// Counts a step that solved all islands together. Returns true if it was so expensive that a separation may pay: if
-  /// it cost twelve iterations or more. \param report cost of the step \param options cost of a factorisation
+  /// Counts a step that solved all islands together. Returns true if it took so many iterations and factorisations that
+  /// a separation may take less time. \param report cost of the step \param options cost of a factorisation
   bool pays(NewtonReport const& report, NewtonOptions const& options) {
     ++since_;
     return !single_ && report.iterations + options.factorisation_cost * report.factorisations >= 12.0;
@@ -80,6 +80,7 @@ class IslandSteps {
     IslandPlaces places;
     State x;
     std::unique_ptr<typename Method::template Workspace<Solver>> work;
+    bool hard = false;  ///< true if the last step needed the full Newton method
   };
   static constexpr long shortest_stay = 16, longest_stay = 1L << 20;
   static constexpr int deepest = 30;
@@ -96,7 +97,8 @@ class IslandSteps {
                                              CoordinatesOf<double>{}),
                     std::move(from.places),
                     {},
-                    {}};
+                    {},
+                    false};
       System& s = *island.system;
       island.work = std::make_unique<typename Method::template Workspace<Solver>>(s);
       method.analyse(s, *island.work);
@@ -149,25 +151,39 @@ class IslandSteps {
     for (Range const& r : island.places.v) std::copy_n(island.x.history.data() + r.own, r.count, w.a.data() + r.model);
   }
 
-  /// Performs a step of an island. A step that does not converge is repeated as two halves from a new start, as in
-  /// `RunDriver::halving_step`. v̇ at the start of the step satisfies the equations of motion, except in islands with
-  /// constraint equations. The run halves their steps.
+  /// Performs a step of an island. If the last step of the island needed the full Newton method, the step begins with
+  /// it.
+  static StepReport attempt(Method const& method, Island& island, double h) {
+    if (std::exchange(island.hard, false)) {
+      try {
+        StepReport const report = method.advance(*island.system, island.x, h, *island.work, 1);
+        island.hard = report.iterations > 4;
+        return report;
+      } catch (NewtonConvergenceFailure const&) {  // all attempts follow
+      }
+    }
+    StepReport const report = method.advance(*island.system, island.x, h, *island.work);
+    island.hard = report.factorisations > 3;
+    return report;
+  }
+  /// Performs a step of an island. A step that does not converge is repeated as two halves from a new start, each of
+  /// which can be halved again, as in `RunDriver::halving_step`.
   static StepReport advance(Method const& method, Island& island, double h, int halvings, int depth = 0) {
     System& system = *island.system;
+    State& x = island.x;
     auto& w = *island.work;
     try {
-      return method.advance(system, island.x, h, w);
+      return attempt(method, island, h);
     } catch (NewtonConvergenceFailure const&) {
-      if (halvings == 0 || depth == deepest || system.rows() > 0) throw;
+      if (halvings == 0 || depth == deepest) throw;
     }
-    StepHistory::reset(island.x);
-    w.tangent.forget();
-    w.reused_factorisation.usable = false;
-    (void)method.start_step(system, island.x, 0.5 * h, w);
+    w.forward.project_velocities(system, x.q, x.v, x.t);
+    method.start(system, x, 0.5 * h, w);
+    (void)method.start_step(system, x, 0.5 * h, w);
     StepReport report = advance(method, island, 0.5 * h, halvings - 1, depth + 1);
     ++report.halved;
     ++report.rejected;
-    (void)method.start_step(system, island.x, h - report.taken, w);
+    (void)method.start_step(system, x, h - report.taken, w);
     report.append(advance(method, island, h - report.taken, halvings, depth + 1));
     return report;
   }
