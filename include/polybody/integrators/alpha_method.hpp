@@ -87,7 +87,7 @@ struct AlphaMethod {
     append_multipliers(system, x);
     StepHistory::reset(x);
     w.reused_factorisation.usable = false;
-    w.islands.forget();
+    w.islands.forget(w.forward.leaves_out());
     if (start_correction && corrected != false && corrected.value_or(detail::jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
   }

@@ -23,13 +23,15 @@ class IslandSteps {
   bool active() const { return left_ > 0; }
   /// Number of islands; zero before the first separation, and for a model with one island.
   std::size_t count() const { return islands_.size(); }
-  /// Discards the data of earlier steps, at a start of the integrator.
-  void forget() {
+  /// Discards the data of earlier steps, at a start of the integrator. \param redundant true if constraint equations
+  /// are redundant, which ends the period
+  void forget(bool redundant) {
+    if (redundant) left_ = 0;
     for (Island& island : islands_) island.hard = island.work->reused_factorisation.usable = false;
   }
 
-  /// Counts a step that solved all islands together. Returns true if it took so many iterations and factorisations that
-  /// a separation may take less time. \param report cost of the step \param options cost of a factorisation
+  /// Counts a step that solved all islands together. Returns true if its iterations and factorisations amount to at
+  /// least twelve iterations. \param report cost of the step \param options cost of a factorisation
   bool pays(NewtonReport const& report, NewtonOptions const& options) {
     ++since_;
     return !single_ && report.iterations + options.factorisation_cost * report.factorisations >= 12.0;
@@ -43,7 +45,7 @@ class IslandSteps {
     stay_ = since_ <= stay_ ? std::min(2 * stay_, longest_stay) : shortest_stay;
     left_ = stay_;
     since_ = 0;
-    forget();
+    forget(false);
     return true;
   }
 
