@@ -250,7 +250,7 @@ struct AlphaMethod {
     VecX& correction() { return w.y; }
     void apply(double part) { method.apply(applied = part, h, both_multiplier_sets, w); }
     bool search(int& count) {
-      if (w.lambda.size() > 0) return evaluate();  // the product y·rhs does not decrease with multipliers
+      if (w.lambda.size() > 0 || system.data().actions.empty()) return evaluate();  // only force elements jump
       double const before = w.y.dot(w.rhs);
       if (!evaluate()) return false;
       double const after = w.y.dot(w.rhs), full = applied;

@@ -152,7 +152,7 @@ TEST(IslandSteps, GiveTheResultOfSeparateModels) {
 }
 
 TEST(IslandSteps, HalveOnlyTheIslandThatFails) {
-  int const balls = 20;
+  int const balls = 60;
   Landing all(0, balls, true, 0.0), pendulum(0, 0, true, 0.0);
   EXPECT_GT(all.run().halved, 0);
   pendulum.run();
