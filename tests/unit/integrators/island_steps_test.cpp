@@ -12,8 +12,8 @@ using OnFloor = Contact<SphereOnPlane>;
 using Group = ContactGroup<OnFloor>;
 
 constexpr double radius = 0.1, mass = 1.0;
-OnFloor floor_with(double mu, double onset) {
-  return {{radius}, {.stiffness = 1e5, .damping = 100.0, .onset = onset}, {.coefficient = mu, .slip_speed = 0.01}};
+OnFloor floor_with(double mu, double onset, double damping = 100.0) {
+  return {{radius}, {.stiffness = 1e5, .damping = damping, .onset = onset}, {.coefficient = mu, .slip_speed = 0.01}};
 }
 Rigid<> ball_at(Vec3 const& r) { return {mass, 0.4 * mass * radius * radius * Mat3::Identity(), Placement::at(r)}; }
 
@@ -111,8 +111,8 @@ struct Landing {
   Model<Bodies<Rigid<>>, Joints<Pin>, Forces<OnFloor>> model{Gravity{0, 0, -9.81}};
   State x;
 
-  /// \param first,end the balls have the numbers [first, end) \param onset of the damping [m]
-  Landing(int first, int end, bool pendulum, double onset) {
+  /// \param first,end the balls have the numbers [first, end) \param onset of the damping [m] \param damping [N s/m]
+  Landing(int first, int end, bool pendulum, double onset, double damping = 100.0) {
     if (pendulum) {
       auto const a = model.add(ball_at({0.5, 0, 1})), b = model.add(ball_at({1.5, 0, 1}));
       Pin const pin{{.axis = Vec3::UnitY()}, {}};
@@ -121,7 +121,7 @@ struct Landing {
     }
     Index const before = model.velocities();
     for (int i = first; i < end; ++i)
-      model.apply(floor_with(0.8, onset),
+      model.apply(floor_with(0.8, onset, damping),
                   model.add(ball_at({0, double(i), radius + 0.02 + 0.1 * std::fmod(0.618 * i, 1.0)})).at(Vec3(0, 0, 0)),
                   model.ground().at({0, 0, 0}));
     x = model.reference_state();
@@ -152,8 +152,8 @@ TEST(IslandSteps, GiveTheResultOfSeparateModels) {
 }
 
 TEST(IslandSteps, HalveOnlyTheIslandThatFails) {
-  int const balls = 60;
-  Landing all(0, balls, true, 0.0), pendulum(0, 0, true, 0.0);
+  int const balls = 60;  // their forces jump to c v at the contact, so that some steps have no solution
+  Landing all(0, balls, true, 0.0, 2000.0), pendulum(0, 0, true, 0.0);
   EXPECT_GT(all.run().halved, 0);
   pendulum.run();
   // half steps would change the error of the pendulum, 1e-5 m, by three quarters
