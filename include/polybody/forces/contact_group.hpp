@@ -43,6 +43,11 @@ class ContactGroup {
   /// Sets the number of the many markers. They are the first `count` markers of the group. Called by the model.
   void set_many(Index count) { many_ = count; }
   Index many() const { return many_; }  ///< number of the many markers
+  /// Keeps all partners and `count` of the many markers. The partners' markers follow them. Called for an island.
+  void keep_many(Index count) {
+    std::apply([&](auto&... few) { (shift(few, count - many_), ...); }, few_);
+    many_ = count;
+  }
   /// Number of partners.
   Index partners() const {
     return Index(std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_));
@@ -137,6 +142,10 @@ class ContactGroup {
       if (one.law.may_touch(frame(i), frame(one.marker))) visit(i, one.marker, one.law);
     }
     bits = n < 64 ? bits >> n : 0;
+  }
+  template <class Few>
+  static void shift(Few& few, Index by) {
+    for (auto& one : few) one.marker += by;
   }
   template <class Few, class F>
   static void each_of(Few const& few, F& f) {

@@ -21,8 +21,9 @@
 #include <optional>
 
 #include <polybody/integrators/alpha_vectors.hpp>
-#include <polybody/integrators/newton_failure.hpp>
-#include <polybody/integrators/step_history.hpp>
+#include <polybody/integrators/island_steps.hpp>
+#include <polybody/integrators/jerk_at_start.hpp>
+#include <polybody/integrators/line_search.hpp>
 #include <polybody/integrators/step_tangent.hpp>
 #include <polybody/math/sequence.hpp>
 
@@ -46,6 +47,7 @@ struct AlphaMethod {
     StepCheck check;                           ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
     double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
+    IslandSteps<AlphaMethod, Solver> islands;  ///< islands of the model, for steps that solve them apart
 
     /// Allocates the vectors and `forward`; `analyse` allocates the tangent.
     explicit Workspace(System& s)
@@ -85,14 +87,15 @@ struct AlphaMethod {
     append_multipliers(system, x);
     StepHistory::reset(x);
     w.reused_factorisation.usable = false;
-    if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
+    w.islands.forget(w.forward.leaves_out());
+    if (start_correction && corrected != false && corrected.value_or(detail::jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
   }
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     (void)start_step(system, x, h, w);
-    return advance(system, x, h, w);
+    return w.islands.active() ? advance_apart(system, x, h, w) : advance(system, x, h, w);
   }
 
   /// Stores v₀ and a₀ of a step of h [s] from x in w. With `start_correction`, corrects them and returns true if v and
@@ -116,6 +119,9 @@ struct AlphaMethod {
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
  private:
+  template <class, class>
+  friend class IslandSteps;
+
   /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
 
@@ -146,24 +152,21 @@ struct AlphaMethod {
   /// Adds the fraction `part` of the correction y: the first entries of y to a, and the others to λ. v̇, v and Δq
   /// change accordingly. \param both_multiplier_sets true if the step has μ besides λ
   void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
-    if (part != 1.0) {
-      w.y *= part;
-      if (both_multiplier_sets) w.back *= part;
-    }
     double const of_vd = mass(), of_v = h * gamma, of_dq = beta * h * h;
     double const* const y = w.y.data();
     double *const a = w.a.data(), *const vd = w.vd.data(), *const v = w.v.data(), *const dq = w.dq.data();
     for_each_simd_block(w.v.size(), [=](auto at) {
-      auto const da = at(y);
+      auto const da = part * at(y);
       at.set(a, at(a) + da);
       at.set(vd, at(vd) + of_vd * da);
       at.set(v, at(v) + of_v * da);
       at.set(dq, at(dq) + of_dq * da);
     });
-    if (both_multiplier_sets) w.dq += w.back;
+    if (both_multiplier_sets)
+      for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] += part * w.back[i];
     double const* const of_lambda = y + w.v.size();
     double* const lambda = w.lambda.data();
-    for_each_simd_block(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + at(of_lambda)); });
+    for_each_simd_block(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + part * at(of_lambda)); });
   }
   CorrectionSize measure(double h, bool both_multiplier_sets, AlphaVectors const& w) const {
     Index const bodies = w.v.size() - w.states;
@@ -175,18 +178,9 @@ struct AlphaMethod {
                               .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
-  /// Right-hand side of a correction: −r, and the scaled violations of the constraint equations or their rates, with
-  /// opposite sign.
-  void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic_equations,
+  void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic,
                        AlphaVectors& w) const {
-    Index const nv = w.v.size(), rows = w.phi.size();
-    double const *const r = w.r.data(), *const open = (both_multiplier_sets ? w.rate : w.phi).data();
-    double *const rhs = w.rhs.data(), *const of_rows = rhs + nv;
-    for_each_simd_block(nv, [=](auto at) { at.set(rhs, -at(r)); });
-    double const scale = -1.0 / (both_multiplier_sets ? h * gamma : beta * h * h);
-    for_each_simd_block(rows, [=](auto at) { at.set(of_rows, scale * at(open)); });
-    if (!both_multiplier_sets)
-      for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
+    w.make_right_hand_side(beta * h * h, gamma * h, both_multiplier_sets, nonholonomic);
   }
 
   /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns −1 on
@@ -209,6 +203,7 @@ struct AlphaMethod {
     double h, look_ahead;  ///< step [s]; fraction of a factorisation's expected use at which its tangent is evaluated
     bool both_multiplier_sets, recomputes_held, surrogate_friction;  ///< the first is true if the step has μ besides λ
     Index bad = -1;
+    double applied = 1.0;  ///< applied part of the last correction
 
     StepPosition place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
     bool evaluate() { return evaluate_at(w.dq); }
@@ -253,7 +248,22 @@ struct AlphaMethod {
     }
     AndersonAcceleration& acceleration() { return w.acceleration; }
     VecX& correction() { return w.y; }
-    void apply(double part) { method.apply(part, h, both_multiplier_sets, w); }
+    void apply(double part) { method.apply(applied = part, h, both_multiplier_sets, w); }
+    bool search(int& count) {
+      if (w.lambda.size() > 0 || system.data().actions.empty()) return evaluate();  // only force elements jump
+      double const before = w.y.dot(w.rhs);
+      if (!evaluate()) return false;
+      double const after = w.y.dot(w.rhs), full = applied;
+      if (!(before > 0.0) || after >= -0.5 * before) return true;
+      bool finite = true;
+      count += detail::search_line(before, after, [&](double s) {
+        method.apply(s * full - applied, h, false, w);
+        applied = s * full;
+        finite = evaluate();
+        return finite ? w.y.dot(w.rhs) : std::numeric_limits<double>::quiet_NaN();
+      });
+      return finite;
+    }
     /// True if a correction of this `norm` (root mean square of accelerations) moves the bodies further within the step
     /// than their velocities move them.
     bool is_far_from_solution(double norm) const {
@@ -296,7 +306,6 @@ struct AlphaMethod {
   /// a stabilised step, a last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
-    StepHistory history(x);
     bool const careful = effort > 0;
     guess(x, h, careful, w);
     bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
@@ -325,6 +334,8 @@ struct AlphaMethod {
     NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
+      if (effort == 0 && w.islands.begin(*this, system, w))
+        return detail::retried(w.check.failed, report, [&] { return advance_apart(system, x, h, w); });
       w.tangent.include(system, w.lambda);
       w.reused_factorisation.usable = false;
       return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
@@ -344,13 +355,24 @@ struct AlphaMethod {
     if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
       w.forward.note_doubt();
-    history.push(x, h, w.a);
-    x.q.swap(w.q);
-    x.v.swap(w.v);
-    x.a.swap(w.vd);
-    x.lambda.swap(w.lambda);
+    if (w.islands.pays(report, options)) (void)w.islands.begin(*this, system, w);
+    return accept(x, h, w), step;
+  }
+  /// Performs one step from x, in which each island has its own iterations and halvings. x changes only if all
+  /// converge.
+  template <class Solver>
+  StepReport advance_apart(System& system, State& x, double h, Workspace<Solver>& w) const {
+    StepReport const step = w.islands.step(*this, system, x, h, w);
+    detail::count_if_failed(w.check.failed, step,
+                            [&] { w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h}); });
+    w.reused_factorisation.usable = false;
+    return accept(x, h, w), step;
+  }
+  static void accept(State& x, double h, AlphaVectors& w) {
+    StepHistory(x).push(x, h, w.a);
+    x.q.swap(w.q), x.v.swap(w.v);
+    x.a.swap(w.vd), x.lambda.swap(w.lambda);
     x.t += h;
-    return step;
   }
 
   /// Corrects v₀ and a₀ for a change of the step from h_old to h_new. The a and v of the method differ from those of
@@ -372,28 +394,6 @@ struct AlphaMethod {
     for (Index i = 0; i < w.jerk.size(); ++i) w.jerk[i] = c * w.jerk[i] + (w.v[i] - w.a[i]) / (12.0 * h_new);
     w.forward.constrained_part(system, x.q, x.v, x.t, w.jerk, w.v);
     for (Index i = 0; i < w.v0.size(); ++i) w.v0[i] += (h_new * h_new - h_old * h_old) * w.v[i];
-  }
-
-  /// Computes q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. Returns false if
-  /// the two results disagree, or if the acceleration at x.t + h changes by more than ½ h ‖q⃛‖ when the motion is
-  /// extrapolated with this q⃛ instead of zero. In an oscillator the second case occurs for ωh above 1.7; after an
-  /// impulse, stiff components dominate q⃛. Steps of h then do not resolve the motion; a correction would add noise.
-  template <class Solver>
-  bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
-    w.jerk.setZero();
-    auto const acceleration_after = [&](double e) {
-      w.follow(x, e);
-      system.plus(x.q, w.dq, w.q);
-      VecX a = x.a;
-      w.forward.accelerations(system, {w.q, w.v, x.t + e}, a, w.rate);
-      return a;
-    };
-    VecX const quarter = acceleration_after(0.25 * h), half = acceleration_after(0.5 * h), full = acceleration_after(h);
-    if (!w.find_jerk(x.a, quarter, half, full, h)) return false;
-    VecX change = acceleration_after(h);
-    for (Index i = 0; i < change.size(); ++i) change[i] -= full[i];
-    return w.of_each_part(
-        [&](Index first, Index end) { return w.norm(change, first, end) <= 0.5 * h * w.norm(w.jerk, first, end); });
   }
 };
 

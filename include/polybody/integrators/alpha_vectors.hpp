@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/math/sequence.hpp>
 #include <polybody/solvers/anderson.hpp>
 #include <polybody/system/state.hpp>
 
@@ -39,6 +40,18 @@ struct AlphaVectors {
         acceleration(rhs.size(), velocities - first_order),
         states(first_order) {}
 
+  /// Right-hand side of a correction: −r, and `phi` or `rate` with opposite sign, divided by `of_dq` or `of_v`.
+  /// \param both_multiplier_sets true if the step has μ besides λ \param nonholonomic_equations their indices
+  void make_right_hand_side(double of_dq, double of_v, bool both_multiplier_sets,
+                            Sequence<Index> const& nonholonomic_equations) {
+    double const *const given = r.data(), *const violated = (both_multiplier_sets ? rate : phi).data();
+    double *const to = rhs.data(), *const of_rows = to + v.size();
+    for_each_simd_block(v.size(), [=](auto at) { at.set(to, -at(given)); });
+    double const scale = -1.0 / (both_multiplier_sets ? of_v : of_dq);
+    for_each_simd_block(phi.size(), [=](auto at) { at.set(of_rows, scale * at(violated)); });
+    if (!both_multiplier_sets)
+      for (Index const i : nonholonomic_equations) of_rows[i] = rate[i] / -of_v;
+  }
   /// Euclidean norm of the entries [i, end) of a.
   static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
   /// Computes Δq and v at the time e [s] after x with constant `jerk`.

@@ -13,7 +13,7 @@ struct AttemptCost {
   int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
 };
 
-/// Cost of one accepted step.
+/// Cost of one accepted step. If a step solves islands apart, each number is the largest one of an island.
 struct StepReport {
   double taken = 0.0;        ///< length of the step [s]
   double next = 0.0;         ///< suggested length of the next step [s]

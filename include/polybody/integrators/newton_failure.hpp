@@ -83,7 +83,7 @@ template <class = void>
 StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each = 1) {
   step.iterations += attempt.iterations;
   step.factorisations += attempt.factorisations;
-  step.evaluations += each * attempt.iterations;
+  step.evaluations += each * attempt.iterations + attempt.searches;
   return step;
 }
 /// Report of a step of length h [s], from the `last` attempt. \param each number of force evaluations per iteration

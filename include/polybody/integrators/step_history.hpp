@@ -29,6 +29,7 @@ class StepHistory {
 
  public:
   static constexpr int lengths = kept + 1;  ///< number of step lengths at the end of the memory
+  static constexpr int of_velocities = kept + 1, of_multipliers = kept;  ///< numbers of arrays (nv), then (rows)
 
   /// Access to the history of a state after `reset`. \throws InvalidInput for a state without a history.
   explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.history) {

@@ -55,6 +55,7 @@ struct NewtonReport {
   NewtonResult result = NewtonResult::converged;  ///< result of the solve
   int iterations = 0;                             ///< number of evaluated right-hand sides, each with a solution
   int factorisations = 0;                         ///< number of factorised tangents
+  int searches = 0;                               ///< number of further evaluations, in line searches
   double theta = 0.0;                             ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖ [1]
   double left = 0.0;  ///< ratio of the last correction to its tolerance if the budget ended the solve; otherwise 0
 };
@@ -264,9 +265,15 @@ struct NewtonSolve {
     return last;
   }
 
+  /// Evaluates the iterate. In the full Newton method, the last correction is shortened if it overshoots.
+  bool evaluate(int k) {
+    if constexpr (requires { problem.search(report.searches); })
+      if (k > 0 && options.always_refactor) return problem.search(report.searches);
+    return problem.evaluate();
+  }
   /// Executes one iteration. Returns the result if the solve ends with it.
   std::optional<NewtonResult> iterate(int k) {
-    if (!problem.evaluate()) {
+    if (!evaluate(k)) {
       reused.usable = reused.usable && k == 0;
       return k == 0 ? NewtonResult::not_finite : NewtonResult::diverged;
     }
@@ -315,6 +322,9 @@ struct NewtonSolve {
 ///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that
 ///                             `solve` computes and `apply` adds
+///   bool search(int&)         (optional) evaluates the iterate, and shortens the last correction if it overshoots.
+///   Adds
+///                             the number of further evaluations
 ///   bool is_far_from_solution(double), void restart()  (optional) true if a correction of this norm is larger than the
 ///                             distance to the solution can be; returns to the first iterate
 /// `reused` describes the factorisation of earlier solves.

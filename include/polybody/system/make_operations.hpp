@@ -6,7 +6,7 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/force_kernels.hpp>
-#include <polybody/system/model.hpp>
+#include <polybody/system/make_islands.hpp>
 #include <polybody/system/secant_operations.hpp>
 
 namespace polybody::detail {
@@ -374,6 +374,9 @@ class OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted
       this->write_rigid_velocities(q, v0, omega, v);
     else
       Loops::rigid_velocities(q, v0, omega, v);
+  }
+  Sequence<ModelIsland> islands() const override {
+    return detail::make_islands<has(Capabilities::tangent), wanted>(this->model_);
   }
   std::shared_ptr<SecantOperations> make_secants(Data<T> const& data) const override {
     if constexpr (has(Capabilities::secants))

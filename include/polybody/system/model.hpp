@@ -16,6 +16,11 @@
 
 namespace polybody {
 
+namespace detail {
+template <class M, Capabilities wanted>
+class IslandMaker;
+}
+
 /// Primary template for invalid lists of types: a static assertion gives the reason.
 template <class BodyList, class JointList, class ForceList = Forces<>>
 class Model {
@@ -312,6 +317,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  private:
   template <class, class, class>
   friend class Subassembly;
+  template <class, Capabilities>
+  friend class detail::IslandMaker;
 
   template <class F, class Vector>
   auto states_in(Vector& v, detail::ForceEntry<F> const& e) const {

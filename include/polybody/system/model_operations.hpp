@@ -9,7 +9,7 @@
 #include <polybody/math/dual.hpp>
 #include <polybody/math/errors.hpp>
 #include <polybody/system/data.hpp>
-#include <polybody/system/layout.hpp>
+#include <polybody/system/island.hpp>
 
 namespace polybody {
 
@@ -178,6 +178,9 @@ class ModelOperations {
   virtual void rigid_velocities(Vector const& /*q*/, Vec3 const& /*v0*/, Vec3 const& /*omega*/, Vector& /*v*/) const {
     missing("velocities of rigid motions");
   }
+
+  /// Makes the equations of each island of the model. Empty if the model has one island, or if it has no tangent.
+  virtual Sequence<ModelIsland> islands() const { return {}; }
 
   /// Allocates the workspace for mean forces over a step.
   virtual std::shared_ptr<SecantOperations> make_secants(Data<T> const&) const { missing("secants"); }

@@ -185,6 +185,21 @@ struct FallingSet {
   auto const& model() const { return balls; }
 };
 
+/// Three balls that slide on the floor, each with its own contact: three islands.
+struct SlidingBalls {
+  using OnFloor = Contact<SphereOnPlane>;
+  Model<Bodies<Rigid<>>, Joints<>, Forces<OnFloor>> balls{Gravity{0, 0, -9.81}};
+
+  SlidingBalls() {
+    for (int i = 0; i < 3; ++i)
+      balls.apply(
+          OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0}, {.coefficient = 0.3, .slip_speed = 0.05}},
+          balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0, double(i), 0.099}))).at(Vec3(0, 0, 0)),
+          balls.ground().at({0, 0, 0}));
+  }
+  auto const& model() const { return balls; }
+};
+
 /// A floating frame of six modes with geometric stiffening on a pin, and a second one at the end of the first. The
 /// size of these bodies is known at run time.
 template <class Policy>
@@ -337,6 +352,22 @@ TEST(NoAllocation, InAStepOfAContactSet) {
   EXPECT_EQ(in_steps<FallingSet>(GeneralisedAlpha{}), 0);
   EXPECT_EQ(in_steps<FallingSet>(GeneralisedAlpha{.second_order_terms = true}), 0);
   EXPECT_EQ(in_steps<FallingSet>(RungeKutta4<>{}), 0);
+}
+
+TEST(NoAllocation, InAStepThatSolvesIslandsApart) {
+  SlidingBalls const setup;
+  State x = setup.balls.reference_state();
+  for (Index i = 0; i < 3; ++i) x.v[6 * i] = 1.0;
+  System system(setup.balls, with<Capabilities::implicit_step>);
+  AlphaMethod const method = method_of(GeneralisedAlpha{});
+  auto workspace = method.workspace<BlockSolver>(system);
+  method.start(system, x, 1e-4, workspace);
+  ASSERT_TRUE(workspace.islands.begin(method, system, workspace));
+  long const before = taken;
+  for (int i = 0; i < 10; ++i) method.step(system, x, 1e-4, workspace);
+  EXPECT_EQ(taken, before);
+  EXPECT_TRUE(workspace.islands.active());
+  EXPECT_NEAR(x.v[0], 1.0 - 0.3 * 9.81 * 1e-3, 2e-3);  // the contact force differs from the weight at first
 }
 
 TEST(NoAllocation, InAStepOfAFloatingFrame) {
