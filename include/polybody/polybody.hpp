@@ -28,6 +28,7 @@
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_coupled_line.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>

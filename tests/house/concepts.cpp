@@ -53,7 +53,7 @@
 
 namespace polybody {
 
-static_assert(Body<AncfBeam<>> && Body<AncfBeam<Continuum<>>>);
+static_assert(Body<AncfBeam<>> && Body<AncfBeam<CoupledLine>> && Body<AncfBeam<Continuum<>>>);
 static_assert(Body<AncfCable<>>);
 static_assert(Body<Ffr>);
 static_assert(Body<Lrvf<RelativeRotation>> && Body<Lrvf<Direct>>);

@@ -94,17 +94,9 @@ namespace detail {
 /// Mass points (see `mass_points`) of the part of a beam from its start to ξ.
 template <class = void>  // compiled where it is used
 std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
-  std::array<MassPoint, 4> points = mass_points(s, beam);
-  for (std::size_t i = 0; i < 4; ++i) {
-    MassPoint& p = points[i];
-    double const at = gauss<4>[i].xi * xi;
-    BeamShapes const shapes(at, beam.length);
-    p.at = s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (at * beam.length);
-    p.axis = in_body_axes(shapes.axis, beam.axes);
-    p.y = in_body_axes(shapes.by_y, beam.axes);
-    p.z = in_body_axes(shapes.by_z, beam.axes);
-    for (double* const part : {&p.m, &p.my, &p.mz}) *part *= xi;
-  }
+  std::array<MassPoint, 4> points;
+  for (std::size_t i = 0; i < 4; ++i)
+    points[i] = mass_point(s, beam, gauss<4>[i].xi * xi, gauss<4>[i].weight * xi * beam.length);
   return points;
 }
 
@@ -158,22 +150,24 @@ class DecoupledStress {
     bool const last = xi == 1.0;
     Vec3 const start = structure.nodes[std::size_t(beam.a)], cut = start + beam.axes.col(0) * (xi * beam.length);
     auto const full = mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
-    BeamMatrix const k = beam_stiffness(beam, section_stiffness(beam.constants));
+    BeamMatrix const stiff = beam_stiffness(beam, section_stiffness(beam));
     std::vector<Vec6> out;
     for (std::size_t i = 0; i < times().size(); ++i) {
       Local const at = local(beam, i);
-      Vec<double, 12> ends = k * at.e;  // forces of the other parts of the structure on the beam's ends
+      Vec<double, 12> ends = stiff * at.e;  // forces of the other parts of the structure on the beam's ends
       for (MassPoint const& g : full) {
-        auto const [a, ay, az] = acceleration(at, g, beam);
-        ends += g.m * (g.axis.transpose() * a) + g.my * (g.y.transpose() * ay) + g.mz * (g.z.transpose() * az);
+        auto const a = acceleration(at, g);
+        ends += g.m * (g.axis.transpose() * a[0]);
+        for (std::size_t k = 0; k < 3; ++k) ends += g.spread[k].w * (g.spread[k].turning.transpose() * a[k + 1]);
       }
       for (StructureLoads::Load const& l : loads_.loads(i))
         if (l.beam == index) ends -= loads_.on_beam(l);
       Vec3 force = ends.head<3>(), moment = ends.segment<3>(3) + (start - cut).cross(ends.head<3>());
       for (MassPoint const& g : before) {
-        auto const [a, ay, az] = acceleration(at, g, beam);
-        force -= g.m * a;
-        moment -= (g.at - cut).cross(g.m * a) + g.my * beam.axes.col(1).cross(ay) + g.mz * beam.axes.col(2).cross(az);
+        auto const a = acceleration(at, g);
+        force -= g.m * a[0];
+        moment -= (g.at - cut).cross(g.m * a[0]);
+        for (std::size_t k = 0; k < 3; ++k) moment -= g.spread[k].w * g.spread[k].direction.cross(a[k + 1]);
       }
       for (StructureLoads::Load const& l : loads_.loads(i))
         if (l.beam == index && (last ? l.xi < 1.0 - same : l.xi <= xi + same)) {
@@ -187,14 +181,21 @@ class DecoupledStress {
     return out;
   }
 
-  /// Axial strain [1] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y.
+  /// Axial strain [1] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y, or
+  /// ε − y κ_z + z κ_y with the strains of a section by matrices.
   /// With damping this is the static strain under `section_forces`. \throws InvalidInput like `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
-    BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
+    Structure::Beam const& beam = loads_.structure().beams[std::size_t(locate(s, bar).first)];
+    BarConstants const& c = beam.constants;
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar))
-      out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
+      if (beam.section) {
+        Vec6 const strains = section_stiffness(beam).llt().solve(n);
+        out.push_back(strains[0] - y * strains[5] + z * strains[4]);
+      } else {
+        out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
+      }
     return out;
   }
   /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, with the section and material
@@ -282,15 +283,16 @@ class DecoupledStress {
     return {loads_.motion(sample), of(e_), of(vibration_.deformed), of(vibration_.rate), of(vibration_.acceleration)};
   }
 
-  /// Acceleration minus gravity at a point of the axis, and its derivatives along y and z of the section.
+  /// Acceleration minus gravity at the centre of mass, and its derivatives along the directions of the moments of mass.
   template <class = void>
-  std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
+  std::array<Vec3, 4> acceleration(Local const& x, MassPoint const& g) const {
     Mat3 const& B = x.motion.B;
-    std::array<Vec3, 3> a{x.motion.b + B * g.at, B * beam.axes.col(1), B * beam.axes.col(2)};
-    Mat<double, 3, 12> const* const shapes[3] = {&g.axis, &g.y, &g.z};
-    for (std::size_t i = 0; i < 3; ++i)
-      a[i] +=
-          *shapes[i] * x.acceleration + B * (*shapes[i] * x.deformed) + 2.0 * x.motion.omega.cross(*shapes[i] * x.rate);
+    std::array<Vec3, 4> a;
+    for (std::size_t i = 0; i < 4; ++i) {
+      Mat<double, 3, 12> const& shapes = i == 0 ? g.axis : g.spread[i - 1].turning;
+      a[i] = i == 0 ? Vec3(x.motion.b + B * g.at) : Vec3(B * g.spread[i - 1].direction);
+      a[i] += shapes * x.acceleration + B * (shapes * x.deformed) + 2.0 * x.motion.omega.cross(shapes * x.rate);
+    }
     return a;
   }
 

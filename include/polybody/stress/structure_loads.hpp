@@ -123,7 +123,7 @@ class StructureLoads {
   /// Nodal forces (12) of a load on its beam.
   template <class = void>
   Vec<double, 12> on_beam(Load const& load) const {
-    BeamShapes const shapes(load.xi, beam(load).length);
+    BeamShapes const shapes(load.xi, beam(load));
     Mat3 const& axes = beam(load).axes;
     return in_body_axes(shapes.axis, axes).transpose() * load.f +
            in_body_axes(shapes.rotation, axes).transpose() * load.m;

@@ -1,5 +1,8 @@
 // Sections given by matrices: laws of the bodies that accept couplings, offsets and sections along the bar; refusals.
 
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_coupled_line.hpp>
+#include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>
@@ -34,7 +37,7 @@ struct Case {
 };
 template <class B>
 struct MeasuredBeam : testing::Test, BodyLaws<Case<B>> {};
-using Bodies = testing::Types<Se3Beam, Lrvf<>, Lrvf<Polar>, Lrvf<Directors, FullQuadrature>>;
+using Bodies = testing::Types<Se3Beam, Lrvf<>, Lrvf<Polar>, Lrvf<Directors, FullQuadrature>, AncfBeam<CoupledLine>>;
 TYPED_TEST_SUITE(MeasuredBeam, Bodies);
 
 TYPED_TEST(MeasuredBeam, ForceIsTheGradientOfTheEnergyAndTheTangentThatOfTheForce) {
@@ -92,6 +95,98 @@ TEST(Section6, OtherBodiesAcceptItWithoutCouplings) {
   EXPECT_TRUE(
       has(refusal([&] { (void)constants({.length = 1.0, .section = uncoupled(), .material = Material{1, 1}}); }),
           "not two of these"));
+}
+
+// Mass matrices that an ANCF section cannot have: J_xx ≠ J_yy + J_zz, products with x, and inertia of one direction
+// only.
+TEST(Section6, AncfBeamNeedsTheMassOfPointsInTheSection) {
+  auto const refused = [](Section6 const& section) {
+    Bar const bar{.length = 1.0, .section = section};
+    return has(refusal([&] { AncfBeam<CoupledLine>::from(bar, 2); }), "must have the mass of points in its plane");
+  };
+  EXPECT_NO_THROW(AncfBeam<CoupledLine>::from({.length = 1.0, .section = composite().placed(0.2, -0.1)}, 2));
+  Section6 s = composite();
+  s.mass(3, 3) *= 1.001;
+  EXPECT_TRUE(refused(s));
+  s = composite();
+  s.mass(3, 4) = s.mass(4, 3) = 1e-4;
+  EXPECT_TRUE(refused(s));
+  s = composite();
+  s.mass(4, 5) = s.mass(5, 4) = std::sqrt(s.mass(4, 4) * s.mass(5, 5));
+  EXPECT_TRUE(refused(s));
+}
+
+// Without couplings the line of `CoupledLine` is that of `ElasticLine`, up to the quadrature of K.
+TEST(Section6, CoupledLineWithoutCouplingsIsTheElasticLine) {
+  Bar shape{.length = 1.0, .section = Rectangle{0.05, 0.03}, .material = Material{.density = 7800.0, .young = 2e11}};
+  auto const same = [](auto const& a, auto const& b) {
+    std::vector<double> q(36), v(36);
+    a.reference(q);
+    for (int i = 0; i < 36; ++i) {
+      q[std::size_t(i)] += 1e-4 * std::sin(1.0 + 2.7 * i);
+      v[std::size_t(i)] = std::cos(0.3 * i * i);
+    }
+    Vec<double, 24> f, g;
+    Mat<double, 24, 24> m, n;
+    a.template force<double>(0, q, v, f);
+    b.template force<double>(0, q, v, g);
+    a.mass(0, q, m);
+    b.mass(0, q, n);
+    EXPECT_LT((f - g).norm(), 1e-6 * f.norm());
+    EXPECT_LT((m - n).norm(), 1e-12 * m.norm());
+    Vec6 const forces = a.section_forces(a.at(0.2), q);
+    EXPECT_LT((b.section_forces(b.at(0.2), q) - forces).norm(), 1e-9 * forces.norm());
+  };
+  Section6 plain = uncoupled();
+  plain.mass(3, 3) = plain.mass(4, 4) + plain.mass(5, 5);
+  Bar const given{.length = 1.0, .section = plain};
+  same(AncfBeam<>::from(given, 2), AncfBeam<CoupledLine>::from(given, 2));
+  shape.damping = {.axial = 1e-6, .shear = 2e-6, .bending = 3e-6};
+  same(AncfBeam<>::from(shape, 2), AncfBeam<CoupledLine>::from(shape, 2));
+}
+
+// Rotation Ω about the first end: ½ Ω·I Ω is the energy of the sections. J_xx ≠ J_yy + J_zz, and the centre of mass is
+// beside the axis.
+TEST(Section6, StructureHasTheInertiaOfItsSections) {
+  Section6 section = uncoupled();
+  section.mass(3, 3) = 7e-3;
+  section = section.placed(0.02, -0.03, 0.4);
+  double const l = 1.2;
+  Structure const s = structure_of({.length = l, .section = section}, 3);
+  Mat3 inertia = Mat3::Zero();
+  for (auto const& g : gauss<3>) {
+    Mat<double, 6, 3> twist;  // of a section for unit Ω
+    twist << skew<double>(Vec3(-g.xi * l, 0, 0)), Mat3::Identity();
+    inertia += g.weight * l * twist.transpose() * section.mass * twist;
+  }
+  EXPECT_NEAR(s.mass, 3.0 * l, 1e-12);
+  EXPECT_LT((s.first - 3.0 * l * Vec3(0.5 * l, 0.02, -0.03)).norm(), 1e-13);
+  EXPECT_LT((s.second.trace() * Mat3::Identity() - s.second - inertia).norm(), 1e-12);
+  MatX turn(s.size(), 3);  // rotation of the nodes
+  for (Index i = 0; i < 4; ++i) turn.middleRows<6>(6 * i) << skew<double>(-s.nodes[std::size_t(i)]), Mat3::Identity();
+  EXPECT_LT((turn.transpose() * (s.mass_matrix() * turn) - inertia).norm(), 1e-12);
+  EXPECT_LT((s.stiffness * turn).norm(), 1e-9 * MatX(s.stiffness).norm());
+}
+
+// Section forces of a cantilever under a tip force and a tip moment, at a point between nodes.
+TEST(Section6, FloatingFrameReturnsTheSectionForces) {
+  Section6 const section = composite().placed(0.3, 0.2, 0.1);
+  double const l = 10.0;
+  Ffr const body = Ffr::from({.length = l, .section = section}, 2, {.stiffening = false});
+  Vec6 tip;
+  tip << 3, -2, 5, 4, 7, -6;
+  Structure const s = structure_of({.length = l, .section = section}, 2);
+  MatX const held = MatX(s.stiffness).bottomRightCorner(12, 12);
+  VecX load = VecX::Zero(12), q(19);
+  load.tail(6) = tip;
+  body.reference(std::span<double>(q.data(), 19));
+  q.tail(12) = held.llt().solve(load);  // the coordinates are relative to the first end
+  Vec6 const n = body.section_forces(body.at(0.35 * l), std::span<double const>(q.data(), 19));
+  double const arm = 0.65 * l;
+  Vec6 exact = tip;
+  exact[4] -= arm * tip[2];
+  exact[5] += arm * tip[1];
+  EXPECT_LT((n - exact).norm(), 1e-8 * exact.norm());
 }
 
 TEST(Section6, CouplingsNeedEqualWeightsInLrvf) {

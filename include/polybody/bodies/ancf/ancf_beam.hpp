@@ -14,8 +14,8 @@ namespace polybody {
 /// element r₀(x) is cubic, and r_y and r_z are linear in x (ancf_field.hpp):
 ///   r(x, y, z) = r₀ + y r_y + z r_z.
 /// A node has twelve coordinates (r, r_x, r_y, r_z), and coordinates add. The mass matrix is constant. The policy
-/// `Elastic` computes the elastic force: `ElasticLine` or `Continuum`. Examples: `AncfBeam<>::from(bar, n)`,
-/// `AncfBeam<Continuum<>>::from(bar, n, curve)`.
+/// `Elastic` computes the elastic force: `ElasticLine`, `CoupledLine` (sections with couplings, ancf_coupled_line.hpp)
+/// or `Continuum`. Examples: `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
 template <class Elastic = ElasticLine>
 class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Chain = ElasticChain<12, typename Elastic::Groups>;
@@ -32,6 +32,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, element_columns>;  ///< S of r = S e, 3×24
   static constexpr Index default_elements = 16;      ///< number of elements of `from(bar)` (`BarMesh`)
+  static constexpr bool on_line = std::derived_from<Elastic, ElasticLine>;  ///< true for strains of the axis
   static constexpr int gradients = 3;  ///< number of position gradients that are linear in the coordinates
 
   /// Material point: element, position ξ ∈ [0, 1] along the element, reference distances y, z from the axis [m].
@@ -213,7 +214,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the axes R of the markers, as a vector of
   /// six (`HasSections`).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
-    if constexpr (std::same_as<Elastic, ElasticLine>) {
+    if constexpr (on_line) {
       Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
                  bend = strains<std::tuple_element_t<1, ElasticLine::Groups>>(p, q);
       Vec6 x;
@@ -228,16 +229,17 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
   /// Section forces without damping. `ElasticLine`: stiffness × strain + pretension. `Continuum`: stress integrals.
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
-    if constexpr (std::same_as<Elastic, ElasticLine>)
-      return Elastic::section_forces(bar_, this->groups_of(p.element), section_strains(p, q));
+    if constexpr (on_line)
+      return Elastic::section_forces(bar_, this->groups_of(p.element), (double(p.element) + p.xi) * l_,
+                                     section_strains(p, q));
     else
       return Elastic::section_forces(bar_, constants_, deformation(p, q), p.xi);
   }
   /// Section deformation of `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, relative to the reference.
   Vec3 section_deformation(Point const& p, std::span<double const> q) const
-    requires std::same_as<Elastic, ElasticLine>
+    requires on_line
   {
-    return strains<std::tuple_element_t<2, typename Elastic::Groups>>(p, q);
+    return strains<std::tuple_element_t<2, ElasticLine::Groups>>(p, q);
   }
 
   /// Deformation gradient F at `p`, from the axes of the reference section to world axes.
@@ -249,7 +251,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms follow from the strain on
   /// the axis, and S₁₂, S₁₃ follow from GA, GA_z: these shear stresses are means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
-    requires(!std::same_as<Elastic, ElasticLine>)
+    requires(!on_line)
   {
     Mat3 const f = deformation_gradient(p, q);
     Mat3 const s = Elastic::second_piola(bar_, constants_, strain(p, q), strain({p.element, p.xi}, q));
@@ -257,12 +259,15 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
 
  private:
-  /// Mass integrals of an element: M = ∫ρ NᵀN dV, equal for the three components, and ∫ρ N dV.
-  struct Inertia {
-    ElementMatrix mass = ElementMatrix::Zero();
-    Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
-  };
+  using Inertia = ancf::Inertia;
 
+  /// Constants of the section, for matrices at the first end of the bar.
+  static BarConstants constants_of(Bar const& bar) {
+    if constexpr (ancf::BySectionMatrices<Elastic>)
+      return Elastic::constants(bar);
+    else
+      return polybody::constants(bar);
+  }
   AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight);
 
   /// Checks the reference of element `e`.
@@ -296,23 +301,6 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     }
   }
 
-  /// Mass integrals of the reference `ref`. Quadrature points: Gauss points along x, exact for the straight bar, and
-  /// four points of the section that reproduce Aρ and both Iρ.
-  Inertia inertia_of(ancf::Reference const& ref) const {
-    double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
-    ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};
-    Inertia out;
-    for (GaussPoint const& g : gauss<4>)
-      section.for_each([&](double y, double z) {
-        double const mass = 0.25 * rho * g.weight * ref.l * ref.gradients(g.xi, y, z).volume;
-        Mat<double, ancf::vectors, 4> const n = ancf::shape(g.xi, y, z, ref.l);
-        for (int a = 0; a < ancf::vectors; ++a) out.first_moment[a] += mass * n(a, 0);
-        for (int a = 0; a < ancf::vectors; ++a)
-          for (int b = 0; b < ancf::vectors; ++b)
-            for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n(a, 0) * n(b, 0);
-      });
-    return out;
-  }
   template <class T>
   std::size_t which(std::vector<T> const& each, Index e) const {
     return each.size() == 1 ? 0 : std::size_t(e);
@@ -368,13 +356,15 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
 template <class Elastic>
 AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
-    : Chain(n), bar_(bar), constants_(polybody::constants(bar)) {
+    : Chain(n), bar_(bar), constants_(constants_of(bar)) {
   std::string const name = Elastic::name;
   require_elements(n, name);
+  bool alike = straight;
+  if constexpr (ancf::BySectionMatrices<Elastic>) alike = alike && !Elastic::varies(bar);
   require_positive(constants_.rotary_inertia, name, ": the bar's rotary inertia about z (mass of the gradient r_y)");
   require_positive(constants_.rotary_inertia_y.value_or(constants_.rotary_inertia),
                    name + ": the bar's rotary inertia about y (mass of the gradient r_z)");
-  require_polar_inertia_of_points(constants_, name);
+  if (!ancf::BySectionMatrices<Elastic>) require_polar_inertia_of_points(constants_, name);
   Elastic::check(bar, constants_);
   l_ = bar.length / double(n);
   for (Index i = 0; i <= n; ++i) {
@@ -382,9 +372,10 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
     nodes_.push_back(curve(s));
     nodes_.back().check(name + ": the reference curve at s = " + number(s));
   }
-  for (Index e = 0; e < (straight ? Index(1) : n); ++e) {
+  for (Index e = 0; e < (alike ? Index(1) : n); ++e) {
     ancf::Reference ref;
     ref.l = l_;
+    ref.start = double(e) * l_;
     ref.straight = straight;
     for (int node = 0; node < 2; ++node) {
       Placement const& p = nodes_[std::size_t(e + node)];
@@ -393,7 +384,7 @@ AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve
     check_reference(ref, e);
     references_.push_back(ref);
     this->add_groups(Elastic::make(bar_, constants_, ref));
-    inertia_.push_back(inertia_of(ref));
+    inertia_.push_back(ancf::inertia_of<Elastic>(bar_, constants_, ref));
   }
 }
 

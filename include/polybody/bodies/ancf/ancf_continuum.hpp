@@ -202,7 +202,7 @@ struct Continuum {
       stiffness[i] = i == 0 ? m.lambda : i < 4 ? 2.0 * m.mu : m.mu;
     }
     double const stretch = -bar.pretension / c.EA;  // strain at which the prestressed bar is free of stress
-    ancf::SectionPoints const section{y, z};
+    ancf::SectionPoints const section{.y = y, .z = z};
     if constexpr (cured) {
       stiffness[1] -= m.young;
       stiffness[5] = stiffness[6] = 0.0;
@@ -298,7 +298,7 @@ struct Continuum {
     Vec<T, 3> const by = director<T>(field.e, 2, xi), bz = director<T>(field.e, 3, xi);
     MeanSectionFrame<T> const frame = Continuum::frame<T>(by, bz, c);
     double const area = c.EA / bar.material->young, lever = Continuum::lever(c);
-    ancf::SectionPoints const section{std::sqrt(c.EI / c.EA), std::sqrt(c.EI_y.value() / c.EA)};
+    ancf::SectionPoints const section{.y = std::sqrt(c.EI / c.EA), .z = std::sqrt(c.EI_y.value() / c.EA)};
     Mat<T, 3, 3> const axis = field.strain(xi, 0.0, 0.0);
     Vec<T, 6> n = Vec<T, 6>::Zero();
     auto const add = [&](double y, double z, Vec<T, 3> const& parts) {

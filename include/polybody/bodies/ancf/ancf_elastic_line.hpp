@@ -210,7 +210,7 @@ struct ElasticLine {
 
   /// Section forces: the stiffness of `groups` times the `strains` (Γ, K) of the section, plus the pretension.
   template <class Made>  // compiled only if used
-  static Vec6 section_forces(Bar const& bar, Made const& groups, Vec6 const& strains) {
+  static Vec6 section_forces(Bar const& bar, Made const& groups, double, Vec6 const& strains) {
     Vec6 n = strains;
     for (int i = 0; i < 3; ++i) {
       n[i] *= std::get<0>(groups).stiffness()[i];
@@ -220,7 +220,8 @@ struct ElasticLine {
     return n;
   }
 
- private:
+ protected:
+  /// Group of the strains of `Law` with the quadrature points `rule`.
   template <class Law>
   static StrainGroup<Law> on_axis(std::array<GaussPoint, Law::points> const& rule, Bar const& bar,
                                   BarConstants const& c, ancf::Reference const& ref, Vec3 const& pretension) {

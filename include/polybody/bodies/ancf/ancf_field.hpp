@@ -45,6 +45,7 @@ Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
 class Reference {
  public:
   double l = 0.0;                       ///< length of the axis [m]
+  double start = 0.0;                   ///< arc length of the first node [m]
   Coordinates x = Coordinates::Zero();  ///< nodal coordinates e
   bool straight = true;                 ///< true if the reference is neither bent nor twisted
 
@@ -103,16 +104,52 @@ struct Deformation {
   }
 };
 
-/// Four points of a section, each with a quarter of its area: y = ±√(I_z/A), z = ±√(I_y/A). They reproduce the area and
-/// both second moments of area. For a rectangle they are the Gauss points (2 × 2).
+/// Four points of a section, each with a quarter of its area or mass: the centre ± a ± b with the vectors a = (`y`,
+/// `yz`) and b = (0, `z`). For a symmetric section, y = √(I_z/A) and z = √(I_y/A) reproduce the area and both second
+/// moments of area. For a rectangle the points are the Gauss points (2 × 2).
 struct SectionPoints {
-  double y, z;  ///< √(I_z/A) and √(I_y/A) [m]
+  double mass = 0.0;                      ///< mass per length of the four points [kg/m]
+  double centre_y = 0.0, centre_z = 0.0;  ///< centre of the points [m]
+  double y = 0.0, yz = 0.0, z = 0.0;      ///< components of a and b [m]
   /// Calls f(y, z) at each of the four points [m].
   template <class F>
   void for_each(F&& f) const {
-    for (double const a : {-y, y})
-      for (double const b : {-z, z}) f(a, b);
+    for (double const a : {-1.0, 1.0})
+      for (double const b : {-1.0, 1.0}) f(centre_y + a * y, centre_z + a * yz + b * z);
   }
 };
+
+/// Elastic force whose mass comes from matrices of the section (`CoupledLine`).
+template <class E>
+concept BySectionMatrices = requires(Bar const& bar) {
+  { E::section_points(bar, 0.0) } -> std::same_as<SectionPoints>;
+};
+
+/// Mass integrals of an element: M = ∫ρ NᵀN dV, equal for the three components, and ∫ρ N dV.
+struct Inertia {
+  Mat<double, columns, columns> mass = Mat<double, columns, columns>::Zero();  ///< M (24×24)
+  Vec<double, vectors> first_moment = Vec<double, vectors>::Zero();            ///< ∫ρ N dV (8)
+};
+/// Mass integrals of the reference `ref`, for an element with the elastic force E. Quadrature points: Gauss points
+/// along x, exact for the straight bar, and four points of the section that reproduce its mass, centre and inertia.
+template <class E>
+Inertia inertia_of(Bar const& bar, BarConstants const& c, Reference const& ref) {
+  double const rho = c.mass_per_length, iz = c.rotary_inertia;
+  SectionPoints section{.mass = rho, .y = std::sqrt(iz / rho), .z = std::sqrt(c.rotary_inertia_y.value_or(iz) / rho)};
+  Inertia out;
+  for (GaussPoint const& g : gauss<4>) {
+    if constexpr (BySectionMatrices<E>) section = E::section_points(bar, ref.start + g.xi * ref.l);
+    section.for_each([&](double y, double z) {
+      double const volume = BySectionMatrices<E> ? 1.0 : ref.gradients(g.xi, y, z).volume;
+      double const mass = 0.25 * section.mass * g.weight * ref.l * volume;
+      Mat<double, vectors, 4> const n = shape(g.xi, y, z, ref.l);
+      for (int a = 0; a < vectors; ++a) out.first_moment[a] += mass * n(a, 0);
+      for (int a = 0; a < vectors; ++a)
+        for (int b = 0; b < vectors; ++b)
+          for (int i = 0; i < 3; ++i) out.mass(3 * a + i, 3 * b + i) += mass * n(a, 0) * n(b, 0);
+    });
+  }
+  return out;
+}
 
 }  // namespace polybody::ancf

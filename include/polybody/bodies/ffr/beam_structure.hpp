@@ -5,82 +5,13 @@
 /// element frames of thesis Eqs. A.2–A.3 permit any direction of an element.
 /// Theory: Eqs. 2.96, 2.97, 2.99, 3.14.
 
-#include <polybody/bodies/ffr/structure.hpp>
+#include <Eigen/Eigenvalues>
+
+#include <polybody/bodies/ffr/beam_shapes.hpp>
 #include <polybody/math/element_functions.hpp>
 
 namespace polybody {
 
-// Space beam element [thesis App. A; Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points, in
-// the axes of the body.
-
-/// Shape functions of thesis Eq. A.1 in the axes of the element, with nodal coordinates (u, v, w, θx, θy, θz) at both
-/// ends. The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is
-/// `rotation` e.
-struct BeamShapes {
-  Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< ∂/∂y, ∂/∂z of (u, v, w)
-  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
-  Mat<double, 4, 12> strain =
-      Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]
-
-  /// Shape functions at ξ of an element of length l [m].
-  template <class = void>  // compiled only if used
-  BeamShapes(double xi, double l) {
-    double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
-                                 3 * x * x - 2 * x * x * x, (x * x * x - x * x) * l};
-    double const d[4] = {6 * (x * x - x) / l, 1 - 4 * x + 3 * x * x, 6 * (x - x * x) / l, 3 * x * x - 2 * x};
-    double const c[4] = {(12 * x - 6) / (l * l), (6 * x - 4) / l, (6 - 12 * x) / (l * l), (6 * x - 2) / l};
-    for (int end = 0; end < 2; ++end) {
-      int const u = 6 * end, v = u + 1, w = u + 2, tx = u + 3, ty = u + 4, tz = u + 5, i = 2 * end;
-      double const linear = end == 0 ? 1 - x : x, slope = end == 0 ? -1 / l : 1 / l;
-      axis(0, u) = linear;
-      axis(1, v) = axis(2, w) = h[i];
-      axis(1, tz) = h[i + 1];
-      axis(2, ty) = -h[i + 1];
-      rotation(0, tx) = linear;  // (θx, −w′, v′)
-      rotation(1, w) = -d[i];
-      rotation(1, ty) = d[i + 1];
-      rotation(2, v) = d[i];
-      rotation(2, tz) = d[i + 1];
-      strain(0, u) = strain(1, tx) = slope;  // (u′, θx′, −w″, v″)
-      strain(2, w) = -c[i];
-      strain(2, ty) = c[i + 1];
-      strain(3, v) = c[i];
-      strain(3, tz) = c[i + 1];
-    }
-    by_y.row(0) = -rotation.row(2);  // θ × (0, y, z)
-    by_y.row(2) = rotation.row(0);
-    by_z.row(0) = rotation.row(1);
-    by_z.row(1) = -rotation.row(0);
-  }
-};
-
-// The following functions run once, when a body is made. They use plain loops, which compile fast.
-
-/// Matrix with respect to the nodal coordinates of both ends of a beam, in the axes of the body.
-using BeamMatrix = Mat<double, 12, 12>;
-
-/// Transforms the columns of m from the axes of the element to those of the body: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ), C = `axes`.
-template <int rows>
-Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& axes) {
-  Mat<double, rows, 12> out;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < 12; ++j) {
-      int const block = 3 * (j / 3);
-      out(i, j) = m(i, block) * axes(j % 3, 0) + m(i, block + 1) * axes(j % 3, 1) + m(i, block + 2) * axes(j % 3, 2);
-    }
-  return out;
-}
-/// Transforms the rows and columns of m from the axes of the element to those of the body: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ),
-/// C = `axes`.
-template <class = void>
-Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
-  Mat<double, 3, 12> const t = by_body_axes<3>(m, axes);
-  Mat<double, 3, 12> out;
-  for (int j = 0; j < 12; ++j)
-    for (int i = 0; i < 3; ++i) out(i, j) = axes(i, 0) * t(0, j) + axes(i, 1) * t(1, j) + axes(i, 2) * t(2, j);
-  return out;
-}
 /// Adds the matrix `m` of one beam to the entries of the matrix of the structure.
 template <class = void>
 void add_entries(Structure::Beam const& beam, BeamMatrix const& m, std::vector<Eigen::Triplet<double>>& entries) {
@@ -95,29 +26,51 @@ void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& su
   for (int i = 0; i < 12; ++i) sum[6 * (i < 6 ? beam.a : beam.b) + i % 6] += x[i];
 }
 
-/// Gauss point of a beam in the axes of the body, with its contributions to ∫ρ, ∫ρy², ∫ρz².
+/// Section of a beam with rigid section kinematics, in the axes of the body: a point mass at the centre of mass, and
+/// the moments Σ w d dᵀ of the mass about the centre with orthogonal directions d.
 struct MassPoint {
-  Vec3 at;                        ///< position on the axis of the beam, from the origin of the body [m]
-  Mat<double, 3, 12> axis, y, z;  ///< (3×12) displacement of the axis and its derivatives with respect to y and z
-  double m, my, mz;               ///< contributions to ∫ρ [kg], ∫ρy² and ∫ρz² [kg m²]
+  /// Moment of mass along one direction.
+  struct Spread {
+    double w = 0.0;              ///< contribution to ∫ρ (d·r)² [kg m²]
+    Vec3 direction;              ///< d, unit vector
+    Mat<double, 3, 12> turning;  ///< (3×12) displacement θ × d
+  };
+  Vec3 at;                       ///< centre of mass, from the origin of the body [m]
+  Mat<double, 3, 12> axis;       ///< (3×12) displacement of the centre of mass
+  double m = 0.0;                ///< mass [kg]
+  std::array<Spread, 3> spread;  ///< moments of the mass
 };
+/// Section at ξ of a beam, for the length `dx` of the beam [m]. For a mass matrix with the inertia J about the centre
+/// of mass, the moments are those of ½ tr(J) 1 − J.
+template <class = void>
+MassPoint mass_point(Structure const& s, Structure::Beam const& beam, double xi, double dx) {
+  BeamShapes const shapes(xi, beam);
+  BarConstants const& c = beam.constants;
+  MassPoint p;
+  Vec3 centre = Vec3::Zero(), moments(0.0, c.rotary_inertia, c.rotary_inertia_y.value_or(c.rotary_inertia));
+  Mat3 directions = Mat3::Identity();
+  if (beam.section) {
+    centre = beam.section->centre;
+    Mat3 const& j = beam.section->inertia;
+    Eigen::SelfAdjointEigenSolver<Mat3> const principal(0.5 * j.trace() * Mat3::Identity() - j);
+    moments = principal.eigenvalues();
+    directions = principal.eigenvectors();
+  }
+  p.m = dx * c.mass_per_length;
+  p.at = s.nodes[std::size_t(beam.a)] + beam.axes * Vec3(xi * beam.length, centre[1], centre[2]);
+  p.axis = in_body_axes(shapes.axis + centre[1] * shapes.by_y + centre[2] * shapes.by_z, beam.axes);
+  for (int i = 0; i < 3; ++i)
+    p.spread[std::size_t(i)] = {
+        dx * moments[i], beam.axes * directions.col(i),
+        in_body_axes(directions(0, i) * shapes.by_x + directions(1, i) * shapes.by_y + directions(2, i) * shapes.by_z,
+                     beam.axes)};
+  return p;
+}
 /// Four Gauss points of a beam, exact for products of cubics.
 template <class = void>
 std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& beam) {
   std::array<MassPoint, 4> points;
-  double const about_z = beam.constants.rotary_inertia, about_y = beam.constants.rotary_inertia_y.value_or(about_z);
-  for (std::size_t i = 0; i < 4; ++i) {
-    auto const& g = gauss<4>[i];
-    BeamShapes const shapes(g.xi, beam.length);
-    double const w = g.weight * beam.length;
-    points[i] = {s.nodes[std::size_t(beam.a)] + beam.axes.col(0) * (g.xi * beam.length),
-                 in_body_axes(shapes.axis, beam.axes),
-                 in_body_axes(shapes.by_y, beam.axes),
-                 in_body_axes(shapes.by_z, beam.axes),
-                 w * beam.constants.mass_per_length,
-                 w * about_z,
-                 w * about_y};
-  }
+  for (std::size_t i = 0; i < 4; ++i) points[i] = mass_point(s, beam, gauss<4>[i].xi, gauss<4>[i].weight * beam.length);
   return points;
 }
 
@@ -130,21 +83,34 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }
 }  // namespace detail
 
-/// Stiffness ∫ Bᵀ diag(c) B of a beam with the section stiffness c. Two Gauss points give the closed form [thesis Eq.
-/// A.5; Przemieniecki 1968, Eq. 5.116 without shear].
+/// Stiffness ∫ Bᵀ C B of a beam with the section stiffness C (6×6) of (ε, γ_y, γ_z, κ_x, κ_y, κ_z). Two Gauss points
+/// are exact: the closed form for constants [thesis Eq. A.5; Przemieniecki 1968, Eq. 5.116 without shear], and the
+/// inverse of the flexibility for matrices.
 template <class = void>
-BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
+BeamMatrix beam_stiffness(Structure::Beam const& beam, Mat<double, 6, 6> const& c) {
   BeamMatrix k = BeamMatrix::Zero();
   for (auto const& g : gauss<2>) {
-    Mat<double, 4, 12> const b = by_body_axes<4>(BeamShapes(g.xi, beam.length).strain, beam.axes);
-    for (int i = 0; i < 4; ++i) detail::add_product(g.weight * beam.length * c[i], b, i, b, i, k);
+    Mat<double, 6, 12> const b = by_body_axes<6>(BeamShapes(g.xi, beam).strain, beam.axes);
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        if (c(i, j) != 0.0) detail::add_product(g.weight * beam.length * c(i, j), b, i, b, j, k);
   }
   return k;
 }
-/// Stiffness (EA, GJ, EI_y, EI_z) of a section: axial strain, torsion, and bending about y and z.
+/// Stiffness (6×6) of the section of a beam: diag(EA, 0, 0, GJ, EI_y, EI) for constants.
 template <class = void>
-Vec4 section_stiffness(BarConstants const& c) {
-  return {c.EA, c.GJ, c.EI_y.value_or(c.EI), c.EI};
+Mat<double, 6, 6> section_stiffness(Structure::Beam const& beam) {
+  if (beam.section) return detail::about_axis(beam.section->stiffness, *beam.section);
+  BarConstants const& c = beam.constants;
+  Vec6 diagonal;
+  diagonal << c.EA, 0.0, 0.0, c.GJ, c.EI_y.value_or(c.EI), c.EI;
+  return diagonal.asDiagonal();
+}
+/// Damping (6×6) of the section of a beam of a bar with the damping `d`.
+template <class = void>
+Mat<double, 6, 6> section_damping(Structure::Beam const& beam, Damping const& d) {
+  if (beam.section) return detail::about_axis(beam.section->damping, *beam.section);
+  return section_stiffness(beam) * detail::damping_times(d).asDiagonal();
 }
 
 /// Geometric stiffness ∫ N (v′ᵀv′ + w′ᵀw′) dx of a beam with the axial force N(ξ) = n₀ + n₁ ξ + n₂ ξ² [N].
@@ -152,7 +118,7 @@ template <class = void>
 BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double n1 = 0.0, double n2 = 0.0) {
   BeamMatrix k = BeamMatrix::Zero();
   for (auto const& g : gauss<4>) {
-    Mat<double, 3, 12> const slopes = by_body_axes<3>(BeamShapes(g.xi, beam.length).rotation, beam.axes);
+    Mat<double, 3, 12> const slopes = by_body_axes<3>(BeamShapes(g.xi, beam).slopes(), beam.axes);
     double const n = n0 + g.xi * (n1 + g.xi * n2);
     for (int i = 1; i < 3; ++i) detail::add_product(g.weight * beam.length * n, slopes, i, slopes, i, k);
   }
@@ -188,7 +154,8 @@ Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, i
   for (MassPoint const& p : mass_points(s, beam))
     for (int j = 0; j < 12; ++j) {
       sum[j] += p.m * (k < 0 ? 1.0 : p.at[k]) * p.axis(l, j);
-      if (k >= 0) sum[j] += p.my * beam.axes(k, 1) * p.y(l, j) + p.mz * beam.axes(k, 2) * p.z(l, j);
+      for (auto const& d : p.spread)
+        if (k >= 0) sum[j] += d.w * d.direction[k] * d.turning(l, j);
     }
   return sum;
 }
@@ -203,15 +170,16 @@ void add_inertia(Structure& s, Structure::Beam const& beam,
     s.mass += g.m;
     for (int k = 0; k < 3; ++k) {
       s.first[k] += g.m * g.at[k];
-      for (int l = 0; l < 3; ++l)
-        s.second(k, l) += g.m * g.at[k] * g.at[l] + g.my * beam.axes(k, 1) * beam.axes(l, 1) +
-                          g.mz * beam.axes(k, 2) * beam.axes(l, 2);
+      for (int l = 0; l < 3; ++l) {
+        s.second(k, l) += g.m * g.at[k] * g.at[l];
+        for (auto const& d : g.spread) s.second(k, l) += d.w * d.direction[k] * d.direction[l];
+      }
     }
     for (std::size_t p = 0; p < 6; ++p) {
       int const k = symmetric_row[p], l = symmetric_column[p];
       add_product(g.m, g.axis, k, g.axis, l, inertia[p]);
-      add_product(g.my, g.y, k, g.y, l, inertia[p]);
-      add_product(g.mz, g.z, k, g.z, l, inertia[p]);
+      for (auto const& d : g.spread)
+        if (d.w != 0.0) add_product(d.w, d.turning, k, d.turning, l, inertia[p]);
     }
   }
   for (std::size_t p = 0; p < 6; ++p) add_entries(beam, inertia[p], entries[p]);
@@ -222,6 +190,30 @@ void add_inertia(Structure& s, Structure::Beam const& beam,
   }
 }
 
+/// Section of a beam of a structure: constants, and matrices if the bar has them.
+struct BeamSection {
+  BarConstants constants;                         ///< without couplings for matrices
+  std::shared_ptr<CentredSection const> section;  ///< empty for constants
+};
+/// Sections of the n beams of a bar, or one for all.
+/// \throws InvalidInput as `constants` and `section_at`, and for constants without torsional stiffness GJ.
+template <class = void>
+std::vector<BeamSection> beam_sections(Bar const& bar, Index n) {
+  std::vector<BeamSection> out;
+  if (!std::holds_alternative<SectionAlong>(bar.section)) {
+    out.push_back({polybody::constants(bar), {}});
+    require_polar_inertia_of_points(out[0].constants, "Structure");
+    require_positive(out[0].constants.GJ, "Structure: GJ of a bar (a floating frame in space resists torsion)");
+  } else {
+    for (Index e = 0; e < (section_varies(bar) ? n : 1); ++e) {
+      auto const section = std::make_shared<CentredSection const>(
+          section_at(bar, (double(e) + 0.5) * bar.length / double(n), "Structure"));
+      out.push_back({constants_without_couplings(*section), section});
+    }
+  }
+  return out;
+}
+
 }  // namespace detail
 
 /// Two ends of bars share a node if their distance is smaller than this fraction of the length of the longest bar.
@@ -229,9 +221,10 @@ inline constexpr double same_node = 1e-9;
 
 /// Structure of `bars`, each divided into the number of elements given by `elements`, welded at common ends. The
 /// placements are in the axes of the body. The damping of the bars is Kelvin–Voigt damping. A pretension contributes
-/// its first-order force and its stiffness.
+/// its first-order force and its stiffness. A bar with matrices (`Section6`) has elements with shear and all couplings,
+/// exact in statics for a constant section; a section that varies is that of the middle of each element.
 /// \throws InvalidInput for no bar, `elements` of another size than `bars`, fewer than one element, and a bar with
-/// invalid data or without torsional stiffness GJ.
+/// invalid data, or with constants or a shape without torsional stiffness GJ.
 template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
@@ -252,17 +245,16 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
   std::vector<double> forces;
   for (std::size_t i = 0; i < bars.size(); ++i) {
     Bar const& bar = bars[i];
-    BarConstants const c = constants(bar);
-    require_polar_inertia_of_points(c, "Structure");
     require_elements(elements[i], "Structure: bar " + std::to_string(i + 1));
-    require_positive(c.GJ, "Structure: GJ of a bar (a floating frame in space resists torsion)");
     double const l = bar.length / double(elements[i]);
+    std::vector<detail::BeamSection> const sections = detail::beam_sections(bar, elements[i]);
     for (Index e = 0; e < elements[i]; ++e) {
       auto const end = [&](Index k) {
         return Vec3(bar.placement.origin + bar.placement.axes.col(0) * (l * double(k)));
       };
       Index const a = node_at(end(e)), b = node_at(end(e + 1));
-      s.beams.push_back({a, b, bar.placement.axes, l, c, Index(i), l * double(e)});
+      auto const& [c, section] = sections[sections.size() == 1 ? 0 : std::size_t(e)];
+      s.beams.push_back({a, b, bar.placement.axes, l, c, Index(i), l * double(e), section});
       dampings.push_back(bar.damping);
       forces.push_back(bar.pretension);
     }
@@ -273,10 +265,8 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
   std::array<std::vector<Eigen::Triplet<double>>, 6> inertia;
   for (std::size_t i = 0; i < s.beams.size(); ++i) {
     Structure::Beam const& beam = s.beams[i];
-    Vec4 const c = section_stiffness(beam.constants);
-    Damping const& d = dampings[i];
-    add_entries(beam, beam_stiffness(beam, c), stiffness);
-    add_entries(beam, beam_stiffness(beam, c.cwiseProduct(Vec4(d.axial, d.shear, d.bending, d.bending))), damping);
+    add_entries(beam, beam_stiffness(beam, section_stiffness(beam)), stiffness);
+    add_entries(beam, beam_stiffness(beam, section_damping(beam, dampings[i])), damping);
     if (forces[i] != 0.0) {
       add_entries(beam, axial_force_stiffness(beam, forces[i]), stiffness);
       Vec<double, 12> pull = Vec<double, 12>::Zero();
@@ -338,7 +328,7 @@ class AxialForceStiffness {
     x = solver_.solve(x).eval();
     std::vector<Eigen::Triplet<double>> entries;
     for (Structure::Beam const& beam : s.beams) {
-      BeamMatrix const stiff = beam_stiffness(beam, section_stiffness(beam.constants));
+      BeamMatrix const stiff = beam_stiffness(beam, section_stiffness(beam));
       Vec<double, 12> const load_within = spread(beam);
       double n0 = 0.0, at_a = 0.0, at_b = 0.0;  // n0: −(K e − f) along the beam at a; at_a, at_b: f at a and b
       for (int i = 0; i < 3; ++i) {

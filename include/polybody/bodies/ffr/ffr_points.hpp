@@ -68,7 +68,7 @@ double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> cons
       least = distance;
     }
     Structure::Beam const& beam = s.beams[nearest];
-    BeamShapes const at(xi, beam.length);
+    BeamShapes const at(xi, beam);
     Vec3 const arm = p.at - s.nodes[std::size_t(beam.a)] - xi * beam.length * beam.axes.col(0);
     Vec<double, 12> const on_beam = in_body_axes(at.axis, beam.axes).transpose() * p.w.f +
                                     in_body_axes(at.rotation, beam.axes).transpose() * (p.w.m + arm.cross(p.w.f));
@@ -100,10 +100,10 @@ struct FfrPoint {
   Vec3 u = Vec3::Zero();                ///< u₀ (3), in the axes of the frame [m]
   Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] for unit q
   std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
-  Mat<double, 4, Eigen::Dynamic>
-      strain;                     ///< (4×n) axial strain [1], torsion, curvatures about y, z [1/m] for unit q; or empty
-  Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI) of the section
-  double y = 0.0, z = 0.0;        ///< distances from the axis of the beam [m]
+  Mat<double, 6, Eigen::Dynamic>
+      strain;  ///< (6×n) strain, two shears [1], twist, curvatures about y, z [1/m] for unit q; or empty
+  Mat<double, 6, 6> stiffness = Mat<double, 6, 6>::Zero();  ///< stiffness of the section; without shear for constants
+  double y = 0.0, z = 0.0;                                  ///< distances from the axis of the beam [m]
 
   /// Entry (i, k) of S − qᵀ drawn, the derivative of the displacement with respect to q.
   template <class T>
@@ -129,15 +129,14 @@ struct FfrPoint {
                          {ErrorObject{"Ffr"}, ": strains are available only at points of beams. Use at(s)."});
     Vec6 sum = Vec6::Zero();
     for (Index k = 0; k < strain.cols(); ++k)
-      for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
+      for (int i = 0; i < 6; ++i) sum[i] += strain(i, k) * q[k];
     return sum;
   }
-  /// Section forces (N, M) for the deformation q [N], [N m], without shear, damping and pretension.
+  /// Section forces (N, M) for the deformation q [N], [N m], without damping and pretension. The shear forces are zero
+  /// for a section that is not given by matrices.
   template <class = void>
   Vec6 section_forces(double const* q) const {
-    Vec6 n = section_strains(q);
-    for (int i = 0; i < 4; ++i) n[i == 0 ? 0 : i + 2] *= stiffness[i];
-    return n;
+    return stiffness * section_strains(q);
   }
 };
 
@@ -193,14 +192,14 @@ class FfrPoints {
     for (Structure::Beam const& b : s_.beams)
       if (b.bar == bar && (!beam || b.start <= inside)) beam = &b;
     double const xi = std::min((inside - beam->start) / beam->length, 1.0);
-    BeamShapes const shapes(xi, beam->length);
+    BeamShapes const shapes(xi, *beam);
     FfrPoint p;
     p.u = s_.nodes[std::size_t(beam->a)] + beam->axes * Vec3(inside - beam->start, y, z);
     Mat<double, 3, 12> const spread = in_body_axes(shapes.axis + y * shapes.by_y + z * shapes.by_z, beam->axes);
     p.S = of_nodes(*beam, spread);
     p.R = of_nodes(*beam, in_body_axes(shapes.rotation, beam->axes));
-    p.strain = of_nodes(*beam, by_body_axes<4>(shapes.strain, beam->axes));
-    p.stiffness = section_stiffness(beam->constants);
+    p.strain = of_nodes(*beam, by_body_axes<6>(shapes.strain, beam->axes));
+    p.stiffness = section_stiffness(*beam);
     p.y = y;
     p.z = z;
     if (axial_)

@@ -4,6 +4,7 @@
 /// Theory: Eq. 2.81.
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Sparse>
@@ -28,7 +29,8 @@ inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 struct Structure {
   using Sparse = Eigen::SparseMatrix<double>;  ///< matrix of nodal coordinates
 
-  /// Straight Euler–Bernoulli beam between two nodes. Beams are stored for strains and stresses, for material points
+  /// Straight beam between two nodes: Euler–Bernoulli beam for constants, and beam with shear for matrices of the
+  /// section. Beams are stored for strains and stresses, for material points
   /// between nodes, and for the geometric stiffness of an axial force.
   struct Beam {
     Index a = 0, b = 0;      ///< indices of the nodes at the ends
@@ -37,6 +39,7 @@ struct Structure {
     BarConstants constants;  ///< constants of the section
     Index bar = 0;           ///< index of the bar that contains the beam
     double start = 0.0;      ///< distance of node a from the first end of that bar [m]
+    std::shared_ptr<detail::CentredSection const> section = {};  ///< section by matrices; empty for constants
   };
 
   int per_node = 6;                           ///< coordinates of a node: 3 or 6

@@ -184,8 +184,8 @@ template <class = void>  // compiled only if used
 [[gnu::cold]] BarConstants uncoupled_constants(SectionAlong const& along) {
   auto const refuse = [](char const* fault) {
     throw InvalidInput("section.coupled", {ErrorObject{"Bar"}, ": the section given by matrices ", fault,
-                                           ". This body needs a constant section without couplings. Use Se3Beam or "
-                                           "Lrvf, which accept every Section6, or give constants."});
+                                           ". This body needs a constant section without couplings. Use Se3Beam, Lrvf, "
+                                           "AncfBeam<CoupledLine> or Ffr, which accept couplings, or give constants."});
   };
   Section6 const* const section = along.target<Section6>();
   if (!section) refuse("is a function of the arc length");

@@ -129,7 +129,7 @@ class ElasticChain : public NodeChain<columns> {
   }
 
   /// Strain energy of element e [J]. With a pretension N, an undeformed element of length l has the energy N² l/(2 EA)
-  /// in `AncfBeam`, and zero in cables and planar beams.
+  /// in `AncfBeam`, and zero in `AncfBeam<CoupledLine>`, cables and planar beams.
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = of_element(e, q);
     double u = 0.0;

@@ -22,11 +22,12 @@ inline constexpr std::string_view cable_green =
     "ANCF cable, Green strain";  ///< `AncfCable<GreenStrain>`, in space and in the plane
 inline constexpr std::string_view cable_engineering =
     "ANCF cable, engineering strain";  ///< `AncfCable<EngineeringStrain>`, in space and in the plane
-inline constexpr std::string_view beam_elastic_line = "ANCF beam, elastic line";  ///< `AncfBeam<ElasticLine>`
-inline constexpr std::string_view beam_continuum = "ANCF beam, continuum";        ///< `AncfBeam<Continuum<…>>`
-inline constexpr std::string_view ffr_nodal = "FFR, nodal coordinates";           ///< `Ffr`, `planar::Ffr`
-inline constexpr std::string_view ffr_modal = "FFR, modal coordinates";  ///< `Ffr` and `planar::Ffr` with modes
-inline constexpr std::string_view other = "other body";                  ///< a body without a family
+inline constexpr std::string_view beam_elastic_line =
+    "ANCF beam, elastic line";                                              ///< `AncfBeam<ElasticLine>`, `CoupledLine`
+inline constexpr std::string_view beam_continuum = "ANCF beam, continuum";  ///< `AncfBeam<Continuum<…>>`
+inline constexpr std::string_view ffr_nodal = "FFR, nodal coordinates";     ///< `Ffr`, `planar::Ffr`
+inline constexpr std::string_view ffr_modal = "FFR, modal coordinates";     ///< `Ffr` and `planar::Ffr` with modes
+inline constexpr std::string_view other = "other body";                     ///< a body without a family
 }  // namespace families
 
 // Declarations of bodies and of their policies, so that this header does not include the headers of the bodies.
@@ -47,6 +48,7 @@ class CholeskyCoordinates;
 struct GreenStrain;
 struct EngineeringStrain;
 struct ElasticLine;
+struct CoupledLine;
 enum class Locking;
 template <Locking locking>
 struct Continuum;
@@ -105,6 +107,9 @@ inline constexpr std::string_view formulation_family<AncfCable<EngineeringStrain
 /// Family of ANCF beams with an elastic line.
 template <>
 inline constexpr std::string_view formulation_family<AncfBeam<ElasticLine>> = families::beam_elastic_line;
+/// Family of ANCF beams with an elastic line and coupled sections.
+template <>
+inline constexpr std::string_view formulation_family<AncfBeam<CoupledLine>> = families::beam_elastic_line;
 /// Family of ANCF beams as a continuum.
 template <Locking locking>
 inline constexpr std::string_view formulation_family<AncfBeam<Continuum<locking>>> = families::beam_continuum;

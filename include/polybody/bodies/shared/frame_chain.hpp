@@ -8,76 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <polybody/bodies/shared/bar.hpp>
+#include <polybody/bodies/shared/bar_sections.hpp>
 #include <polybody/bodies/shared/frame_secants.hpp>
 
 namespace polybody {
-
-namespace detail {
-
-/// Sections of the elements and nodes of a bar, about their centres of mass.
-struct ChainSections {
-  BarConstants constants;                ///< of the first element; without couplings, if the bar has matrices
-  std::vector<CentredSection> elements;  ///< in the middle of each element, or one for all
-  std::vector<CentredSection> nodes;     ///< at each node, or one for all
-};
-
-/// Sections of a bar of n elements.
-/// \throws InvalidInput as `constants` and `centred`, and for a section of a shape or constants without all
-/// stiffnesses; `body` begins the message.
-template <class = void>  // compiled only if used
-[[gnu::cold]] ChainSections chain_sections(Bar const& bar, Index n, std::string const& body) {
-  Vec6 times;
-  for (int i = 0; i < 6; ++i) times[i] = i == 0 ? bar.damping.axial : i < 4 ? bar.damping.shear : bar.damping.bending;
-  auto const* const along = std::get_if<SectionAlong>(&bar.section);
-  if (!along) {
-    BarConstants const c = constants(bar);
-    CentredSection section{.mass = c.mass_per_length};
-    Vec3 const rotary = rotary_inertias(c);
-    double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
-    char const* const names[] = {"EA", "GA", "GA_z", "GJ", "EI_y", "EI"};
-    for (int i = 0; i < 6; ++i) {
-      require_positive(stiffness[i], body + ": the stiffness " + names[i] + " of the bar");
-      section.stiffness(i, i) = stiffness[i];
-      section.damping(i, i) = stiffness[i] * times[i];
-      if (i < 3) section.inertia(i, i) = rotary[i];
-    }
-    return {c, {section}, {section}};
-  }
-  check_bar(bar);
-  if (!*along)
-    throw InvalidInput("section.missing", {ErrorObject{body},
-                                           ": the section of the bar is an empty function. Pass a "
-                                           "function that returns a Section6 for each arc length."});
-  std::vector<CentredSection> elements, nodes;
-  Index const count = along->target<Section6>() ? 1 : n;
-  double const l = bar.length / double(n);
-  for (Index e = 0; e < count; ++e) {
-    double const s = (double(e) + 0.5) * l;
-    elements.push_back(centred((*along)(s), times, s));
-  }
-  for (Index i = 0; i < (count == 1 ? 1 : n + 1); ++i) {
-    double const s = double(i) * l;
-    nodes.push_back(count == 1 ? elements[0] : centred((*along)(s), times, s));
-  }
-  CentredSection const& first = elements[0];
-  Mat<double, 6, 6> const& k = first.stiffness;
-  Mat3 const& j = first.inertia;
-  return {.constants = {.EA = k(0, 0),
-                        .EI = k(5, 5),
-                        .mass_per_length = first.mass,
-                        .GA = k(1, 1),
-                        .GJ = k(3, 3),
-                        .rotary_inertia = j(2, 2),
-                        .EI_y = k(4, 4),
-                        .GA_z = k(2, 2),
-                        .rotary_inertia_y = j(1, 1),
-                        .polar_inertia = j(0, 0)},
-          .elements = elements,
-          .nodes = nodes};
-}
-
-}  // namespace detail
 
 /// Chain of n equal elements between n + 1 nodes. A node has the position r (3) in world axes and the unit quaternion
 /// (4) of its section as coordinates, and ṙ (3) and Ω (3) in section axes as generalised velocities. q ⊞ δ adds δr and

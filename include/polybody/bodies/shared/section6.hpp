@@ -18,8 +18,9 @@ namespace polybody {
 /// M_z) are `stiffness` · (ε, γ_y, γ_z, κ_x, κ_y, κ_z), and the kinetic energy per length is ½ Vᵀ `mass` V with the
 /// twist V = (U, Ω) of the section:
 ///   mass = [m 1, −m c̃; m c̃, J],
-/// where c = (0, y, z) is the centre of mass and J the inertia about the axis. `Se3Beam` accepts all such sections.
-/// Other bodies accept a section that is constant along the bar, without coupling and with c = 0.
+/// where c = (0, y, z) is the centre of mass and J the inertia about the axis. `Se3Beam`, `Lrvf` and `Ffr` accept
+/// all such sections. `AncfBeam<CoupledLine>` accepts those whose mass is in the plane of the section. Other bodies
+/// accept a section that is constant along the bar, without coupling and with c = 0.
 ///
 /// Damping is proportional to the stiffness C: with the damping times τ, the damping part of the section forces is
 ///   D (ε˙, …, κ˙_z),  D_ij = √τ_i C_ij √τ_j,

@@ -23,6 +23,8 @@ namespace polybody {
 template <StrainFunctions Law>
 class StrainGroup : public StrainPoints<Law> {
   using Points = StrainPoints<Law>;
+
+ protected:
   using Points::quadratic, Points::stiffness_, Points::time_, Points::initial_, Points::damped_, Points::maps_,
       Points::products_, Points::weights_, Points::free_;
 
