@@ -153,6 +153,8 @@ def header(name, text):
         for member in WAITING.get(name, {}).get(i + 1, ()):
             say_what_is_asked(lines, i, folder, member)
     group = f"floor_{folder}" if within else "floor_all"
+    if folder == "bodies" and within[0] in ("shared", "fe"):
+        group += "_shared"
     text = "\n".join(with_equations(list(on_lines_of_their_own(lines))))
     text = re.sub(r"^(namespace polybody[\w:]* \{)\n", rf"\1 /** @addtogroup {group}\n@{{ */", text, flags=re.M)
     return re.sub(r"^(\}  // namespace polybody)", r"/** @} */ \1", text, flags=re.M)

@@ -133,7 +133,7 @@ concept SecantInterpolation = requires { requires I::secants; };
 class RelativeRotation {
  public:
   static constexpr bool objective = true;
-  static constexpr bool secants = true;
+  static constexpr bool secants = true;  ///< the strains are functions of the relative motion of the nodes
   explicit RelativeRotation(Placement const&) {}  ///< the placement has no influence
 
   /// Section in a state, with intermediate results for its derivatives.

@@ -26,6 +26,7 @@ struct FrameStep {
   double h = 0.0;                  ///< length of the step [s]
   double decay = 0.0;              ///< χ [1]
 
+  /// Coefficients of the stress over the step.
   DiscreteDerivative means() const { return {1.0 / h, decay}; }
   /// Angular velocity v₀ + share h a of frame i in its axes [rad/s].
   template <class T = double>  // compiled only if used
@@ -47,7 +48,7 @@ struct FrameSecant {
 struct CayleyTurn {
   Mat3 from, to;  ///< axes R₀ and R₁
   Mat3 map;       ///< P: the vector c in world axes is P c
-  Vec3 spatial;   ///< P c
+  Vec3 spatial;   ///< P c [1]
 };
 /// Rotation of frame i of `step`.
 template <class T = double>  // compiled only if used
