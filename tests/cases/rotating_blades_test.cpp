@@ -7,6 +7,7 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
 #include <polybody/bodies/shared/family.hpp>
+#include <polybody/run/probe.hpp>
 
 #include <gtest/gtest.h>
 
