@@ -36,8 +36,8 @@ class IslandSteps {
     ++since_;
     return !single_ && report.iterations + options.factorisation_cost * report.factorisations >= 12.0;
   }
-  /// Begins a period of steps that solve the islands apart. Returns false for a model with one island, with eliminated
-  /// unknowns or with redundant constraint equations.
+  /// Begins a period of steps of `method`, with the workspace `w`, that solve the islands apart. Returns false for a
+  /// model with one island, with eliminated unknowns or with redundant constraint equations.
   template <class Workspace>
   [[gnu::cold]] bool begin(Method const& method, System& system, Workspace& w) {
     if (!single_ && islands_.empty()) separate(method, system);
@@ -49,9 +49,9 @@ class IslandSteps {
     return true;
   }
 
-  /// Solves a step of h [s] from x. w contains v₀ and a₀ of the step; w.q, w.v, w.vd, w.a and w.lambda receive its end,
-  /// at which `system` is evaluated. The report contains the largest numbers of an island. \throws the exceptions of a
-  /// step
+  /// Solves a step of `method` with the length h [s] from x. w contains v₀ and a₀ of the step; w.q, w.v, w.vd, w.a and
+  /// w.lambda receive its end, at which `system` is evaluated. The report contains the largest numbers of an island.
+  /// \throws the exceptions of a step
   template <class Workspace>
   StepReport step(Method const& method, System& system, State const& x, double h, Workspace& w) {
     StepReport most;

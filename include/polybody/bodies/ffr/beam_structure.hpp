@@ -83,7 +83,7 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }
 }  // namespace detail
 
-/// Stiffness ∫ Bᵀ C B of a beam with the section stiffness C (6×6) of (ε, γ_y, γ_z, κ_x, κ_y, κ_z). Two Gauss points
+/// Stiffness ∫ Bᵀ C B of a beam with the section stiffness `c` (6×6) of (ε, γ_y, γ_z, κ_x, κ_y, κ_z). Two Gauss points
 /// are exact: the closed form for constants [thesis Eq. A.5; Przemieniecki 1968, Eq. 5.116 without shear], and the
 /// inverse of the flexibility for matrices.
 template <class = void>

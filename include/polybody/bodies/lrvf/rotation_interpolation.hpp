@@ -133,7 +133,7 @@ concept SecantInterpolation = requires { requires I::secants; };
 class RelativeRotation {
  public:
   static constexpr bool objective = true;
-  static constexpr bool secants = true;  ///< the strains are functions of the relative motion of the nodes
+  static constexpr bool secants = true;           ///< supports energy-conserving steps
   explicit RelativeRotation(Placement const&) {}  ///< the placement has no influence
 
   /// Section in a state, with intermediate results for its derivatives.

@@ -170,7 +170,8 @@ template <class T = double>  // compiled only if used
 Vec<T, 3> mean_gyroscopic_moment(FrameStep const& step, Index i, Mat<T, 3, 3> const& inertia) {
   return cross<T>(product(inertia, step.spin<T>(i, 0.5)), step.spin<T>(i, 0.5 + step.decay));
 }
-/// Derivative ½ h ũ J − (½ + χ) h (J Ω̄)~ of u × J Ω̄ of frame i with respect to the mean acceleration.
+/// Derivative ½ h ũ J − (½ + χ) h (J Ω̄)~ of u × J Ω̄ of frame i, whose `inertia` is J, with respect to the mean
+/// acceleration.
 template <class T = double>  // compiled only if used
 Mat<T, 3, 3> mean_gyroscopic_tangent(FrameStep const& step, Index i, Mat<T, 3, 3> const& inertia) {
   Mat<T, 3, 3> k = skew_product<T>(step.spin<T>(i, 0.5 + step.decay), inertia);
@@ -193,7 +194,7 @@ concept HasFrameSteps =
       } -> std::same_as<FrameSecant<Secant<B::point_columns>>>;
     };
 
-/// Writes the coordinates of `body` at the end of a step with the increments y to `q1`.
+/// Writes the coordinates of `body` at the end of a step from `q0` with the increments y to `q1`.
 template <class B>
 void step_end(B const& body, std::span<double const> q0, std::span<double const> y, std::span<double> q1) {
   if constexpr (HasFrameSteps<B>)
