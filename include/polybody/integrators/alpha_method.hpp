@@ -352,7 +352,7 @@ struct AlphaMethod {
       system.plus(x.q, w.dq, w.q);
       w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
-    if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
+    if (w.solver().lost_rank() || w.tangent.end_step() || report.searches > 0) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
       w.forward.note_doubt();
     if (w.islands.pays(report, options)) (void)w.islands.begin(*this, system, w);
