@@ -12,16 +12,16 @@ namespace {
 using namespace polybody;
 using OnPlane = Contact<SphereOnPlane>;
 
-enum class Motion { rolling, sliding, landing };
+enum class BallMotion { rolling, sliding, landing };
 
 struct Balls {
   Model<Bodies<Rigid<>>, Joints<>, Forces<OnPlane>> model{Gravity{0, 0, -9.81}};
   State start;
 
-  Balls(Motion motion, int count) {
+  Balls(BallMotion motion, int count) {
     double const radius = 0.1;
     for (int i = 0; i < count; ++i) {
-      double const height = motion == Motion::landing ? 0.02 + 0.3 * std::fmod(0.618034 * i, 1.0) : -1e-4;
+      double const height = motion == BallMotion::landing ? 0.02 + 0.3 * std::fmod(0.618034 * i, 1.0) : -1e-4;
       auto const ball = model.add(
           Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.5 * (i % 40), 0.5 * (i / 40), radius + height})));
       model.apply(OnPlane{{radius}, {.stiffness = 1e5, .damping = 100.0}, {.coefficient = 0.8, .slip_speed = 0.01}},
@@ -34,7 +34,7 @@ struct Balls {
       double* const of_ball = start.v.data() + 6 * i;
       of_ball[0] = v * std::cos(direction);
       of_ball[1] = v * std::sin(direction);
-      if (motion == Motion::rolling) {
+      if (motion == BallMotion::rolling) {
         of_ball[3] = -of_ball[1] / radius;
         of_ball[4] = of_ball[0] / radius;
       }
@@ -45,8 +45,9 @@ struct Balls {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (auto const& [name, motion] : {std::pair("rolling", Motion::rolling), std::pair("sliding", Motion::sliding),
-                                     std::pair("landing", Motion::landing)})
+  for (auto const& [name, motion] :
+       {std::pair("rolling", BallMotion::rolling), std::pair("sliding", BallMotion::sliding),
+        std::pair("landing", BallMotion::landing)})
     for (int const count : {1, 200, 1000})
       registered::add("balls/" + std::string(name) + "/GeneralisedAlpha/balls:" + std::to_string(count),
                       [motion, count](benchmark::State& state) {

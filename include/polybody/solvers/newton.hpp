@@ -322,9 +322,8 @@ struct NewtonSolve {
 ///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that
 ///                             `solve` computes and `apply` adds
-///   bool search(int&)         (optional) evaluates the iterate, and shortens the last correction if it overshoots.
-///   Adds
-///                             the number of further evaluations
+///   bool search(int&)         (optional) evaluates the iterate, shortens the last correction if it overshoots, and
+///                             adds the number of further evaluations
 ///   bool is_far_from_solution(double), void restart()  (optional) true if a correction of this norm is larger than the
 ///                             distance to the solution can be; returns to the first iterate
 /// `reused` describes the factorisation of earlier solves.
