@@ -37,7 +37,8 @@ struct Diagnosis {
 namespace detail {
 
 /// Undamped small motion with the largest frequency, under the stiffness K = −∂f/∂q alone. The power iteration solves M
-/// aₖ₊₁ + Gᵀμ = K aₖ, G aₖ₊₁ = 0.
+/// aₖ₊₁ + Gᵀμ = K aₖ, G aₖ₊₁ = 0. With the damping D = −∂f/∂v instead of K, the squared frequency is the largest decay
+/// rate.
 class StiffestMotion {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
@@ -46,10 +47,9 @@ class StiffestMotion {
   /// 1e-3 if the relative distance of the two largest eigenvalues is at least 1e-3. `forward` must be factorised at the
   /// state at which `system` was evaluated.
   template <class = void>
-  StiffestMotion(System& system, ForwardDynamics<DefaultSolver>& forward) {
-    Matrix const elastic = matrix_of(system, [&](auto& sink) {
-      system.tangent({.stiffness = 1.0}, SecondOrder::omitted, VecX::Zero(system.rows()), sink);
-    });
+  StiffestMotion(System& system, ForwardDynamics<DefaultSolver>& forward, TangentCoefficients of = {.stiffness = 1.0}) {
+    Matrix const elastic = matrix_of(
+        system, [&](auto& sink) { system.tangent(of, SecondOrder::omitted, VecX::Zero(system.rows()), sink); });
     VecX a(system.velocities()), mu = VecX::Zero(system.rows());
     for (Index i = 0; i < a.size(); ++i) a[i] = std::fmod(0.6180339887498949 * double(i + 1), 1.0) - 0.5;
     VecX pushed = elastic * a;
