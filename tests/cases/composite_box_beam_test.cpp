@@ -16,23 +16,11 @@
 #include <gtest/gtest.h>
 
 #include "support/held.hpp"
+#include "support/measured_sections.hpp"
 
 using namespace polybody;
 
 namespace composite_box_beam_test {
-
-/// Box of six plies at 15° in all walls, 0.953 in × 0.530 in outside, t = 0.03 in, in pounds and inches [Yu, Hodges &
-/// Ho 2012]. The mass follows from the density 1.353e-4 lb s²/in⁴ of the thin walls.
-Section6 box() {
-  Section6 section;
-  auto& c = section.stiffness;
-  c.diagonal() << 1.437e6, 9.027e4, 3.943e4, 1.679e4, 6.621e4, 1.725e5;
-  c(0, 3) = c(3, 0) = 1.074e5;
-  c(1, 4) = c(4, 1) = -5.201e4;
-  c(2, 5) = c(5, 2) = -5.635e4;
-  section.mass.diagonal() << 1.156e-5, 1.156e-5, 1.156e-5, 1.87e-6, 0.53e-6, 1.34e-6;
-  return section;
-}
 
 /// Flexibility (6×6) of the tip of a cantilever of length l with the compliance S. The section forces at the distance a
 /// from the tip are T(a) f, T = 1 + a E, so that ∫ TᵀST da = l S + ½ l² (EᵀS + S E) + ⅓ l³ EᵀS E.
@@ -57,7 +45,8 @@ TYPED_TEST(CompositeBoxBeam, TipUnderEachLoad) {
   struct {
     Section6 section;
     char const* where;
-  } const rows[] = {{box(), "axis in the box"}, {box().placed(0.3, -0.2, 0.5), "axis beside the box, turned"}};
+  } const rows[] = {{box_beam(), "axis in the box"},
+                    {box_beam().placed(0.3, -0.2, 0.5), "axis beside the box, turned"}};
   for (auto const& [section, where] : rows) {
     Mat<double, 6, 6> const exact = tip_flexibility(section, l);
     auto const tip = [&](Index elements, int load) {
@@ -101,7 +90,7 @@ TYPED_TEST(CompositeBoxBeam, TipUnderEachLoad) {
 // is exact with one element.
 TEST(CompositeBoxBeam, OneElementOfAFloatingFrameIsExact) {
   double const l = 30.0;
-  Section6 const section = box().placed(0.3, -0.2, 0.5);
+  Section6 const section = box_beam().placed(0.3, -0.2, 0.5);
   Mat<double, 6, 6> const
       exact = tip_flexibility(section, l),
       found = MatX(structure_of({.length = l, .section = section}, 1).stiffness).bottomRightCorner(6, 6).inverse();

@@ -534,7 +534,9 @@ void expect_ring(Policy const& policy, double stiffness, char const* pins) {
   double const across = 2.0 * std::sin(ring.half);
   double const open = ideal ? 0.0 : ring.force / (stiffness - ring.force / (across * ring.middle));
   double const force = ideal ? ring.force : stiffness * open;
-  if (!ideal) EXPECT_NEAR(open, ring.force / stiffness, 1e-3 * open);
+  if (!ideal) {
+    EXPECT_NEAR(open, ring.force / stiffness, 1e-3 * open);
+  }
   State x = ring.model.reference_state();
   for (auto const& link : ring.links) {
     x.q.template segment<2>(ring.model.entry(link).q0) *= 1.0 + open / (across * ring.middle);

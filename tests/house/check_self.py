@@ -136,6 +136,7 @@ class Reader(unittest.TestCase):
             ("struct A { bool operator()(int a) const noexcept(x(1)) { return {}; } operator T() const { return {}; }"
              " ~A() {} };",
              ("A::operator()", 1, 1, 1), ("A::operator T", 1, 1, 0), ("A::~A", 1, 1, 0)),
+            ("int operator_of(int a) { return a; } void operators_in() {}", ("operator_of", 1, 1, 1), ("operators_in", 1, 1, 0)),
             ("struct A { friend auto operator<=>(A const& a, A const& b) { return 0; } A& operator++() {} };",
              ("A::operator<=>", 1, 1, 2), ("A::operator++", 1, 1, 0)),
             ("void A<B<C...>>::f(std::function<void(int, int)> g = [](int a, int b) { return a; })\n"

@@ -149,7 +149,7 @@ def parameter_list(head):
             # the qualified name: Model<Bodies<Bs...>>::add
             before = re.search(r"((?:\w+\s*::\s*)*)$", re.sub(r"\s*(?=::)", "", top[: m.start()]))
             name = re.sub(r"\s", "", before[1] + m[1])
-            if name.startswith("operator_"):
+            if re.fullmatch("operator_+", name):
                 name = re.sub(r"\s", "", re.search(r"operator\s*(\(\s*\)|\[\s*\]|[^\w\s(]+)", bare(head))[0])
             elif conversion := re.search(r"\boperator\s+(\w+)\s*$", top[: m.end() - 1]):
                 name = f"operator {conversion[1]}"

@@ -43,6 +43,21 @@ Drift drift_of(M const& model, State& x, I const& integrator, double h, int step
   return drift;
 }
 
+/// Constant energy, momenta and constraint functions.
+inline void expect_invariants(Drift const& drift) {
+  EXPECT_LT(drift.energy, 1e-8);
+  EXPECT_LT(drift.linear, 1e-10);
+  EXPECT_LT(drift.angular, 1e-8);
+  EXPECT_LT(drift.violation, 1e-11);
+}
+/// Constant momenta, and an energy that no step increases. The energy changes by more than `least`, relative.
+inline void expect_decay(Drift const& drift, double least) {
+  EXPECT_LT(drift.largest_gain, 1e-11);
+  EXPECT_GT(drift.energy, least);
+  EXPECT_LT(drift.linear, 1e-10);
+  EXPECT_LT(drift.angular, 1e-8);
+}
+
 /// Invariants of a run without loads, relative: energy and angular momentum to 1e-8, linear momentum to 1e-10.
 inline void held_drift(Drift const& drift, char const* formulation) {
   auto const claim = [&](char const* what) { return Claim{"I3", what, By::closed_form, "invariant", formulation}; };

@@ -16,6 +16,18 @@ inline Section6 composite() {
   section.mass.diagonal() << 8.538e-2, 8.538e-2, 8.538e-2, 1.4433e-2, 0.40972e-2, 1.0336e-2;
   return section;
 }
+/// Box of six plies at 15° in all walls, 0.953 in × 0.530 in outside, t = 0.03 in, in pounds and inches [Yu, Hodges &
+/// Ho 2012]. The mass follows from the density 1.353e-4 lb s²/in⁴ of the thin walls.
+inline Section6 box_beam() {
+  Section6 section;
+  auto& c = section.stiffness;
+  c.diagonal() << 1.437e6, 9.027e4, 3.943e4, 1.679e4, 6.621e4, 1.725e5;
+  c(0, 3) = c(3, 0) = 1.074e5;
+  c(1, 4) = c(4, 1) = -5.201e4;
+  c(2, 5) = c(5, 2) = -5.635e4;
+  section.mass.diagonal() << 1.156e-5, 1.156e-5, 1.156e-5, 1.87e-6, 0.53e-6, 1.34e-6;
+  return section;
+}
 /// Section with the stiffness and mass of a rectangle of steel, without couplings.
 inline Section6 uncoupled() {
   Vec6 c, m;

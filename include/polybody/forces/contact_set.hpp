@@ -1,4 +1,8 @@
 #pragma once
+/// \file
+/// Contacts among the members of a set of shapes: search of near pairs, forces and tangents.
+/// Theory: Eqs. 8.3, 8.12, 8.13, 9.69.
+
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -41,7 +45,6 @@ struct Shapes {};
 /// one body have no contact with each other, nor have members with the same positive number of their group, nor
 /// excluded pairs. A grid finds the pairs that are near each other (`PairSearch`). The sums of the forces have an order
 /// that depends only on the positions, so that runs are bitwise repeatable.
-/// Theory: Eqs. 8.3, 8.12, 8.13, 9.69.
 template <class ShapeList, NormalForce N = SpringDamperContact, ContactFriction F = Friction>
 class ContactSet;
 /// Contact set with shapes of the types `Ss`.

@@ -105,7 +105,9 @@ TYPED_TEST(NaturalShape, YieldsToARadialForceAsCastiglianoSays) {
   held(exact("tip of a quarter circle under a radial force [m]",
              green ? "Castigliano, (π/4) P R³/EI" : "Castigliano, (π/4) P R (R²/EI + 1/EA + 1/GA)", TestFixture::name),
        coarse, exactly, (this->rod ? 1.02 * std::pow(quarter / 16.0, 2) / 4.0 : 1e-5) * exactly);
-  if (this->rod) EXPECT_NEAR((4.0 * fine - coarse) / 3.0, exactly, 1e-5 * exactly);
+  if (this->rod) {
+    EXPECT_NEAR((4.0 * fine - coarse) / 3.0, exactly, 1e-5 * exactly);
+  }
 }
 
 TYPED_TEST(NaturalShape, IsRefusedWhereItIsNoCurve) {

@@ -173,7 +173,9 @@ TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
       auto run = simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 1.0, .step = 4e-3});
       for (int i = 0; i < steps; ++i) {
         fault = {i == failing ? 3 : -1};
-        if (i == failing) EXPECT_THROW(run.advance(), std::runtime_error);
+        if (i == failing) {
+          EXPECT_THROW(run.advance(), std::runtime_error);
+        }
         run.advance();
       }
       return x;

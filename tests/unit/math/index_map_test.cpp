@@ -33,7 +33,9 @@ TEST(IndexMap, DoesWhatStdMapDoes) {
     EXPECT_EQ(expected, theirs.end());
     Index const asked = Index(draw() % 50);
     EXPECT_EQ(ours.find(asked) != nullptr, theirs.contains(asked));
-    if (double const* const found = ours.find(asked)) EXPECT_EQ(*found, theirs.at(asked));
+    if (double const* const found = ours.find(asked)) {
+      EXPECT_EQ(*found, theirs.at(asked));
+    }
   }
 }
 

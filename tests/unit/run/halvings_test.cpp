@@ -106,7 +106,9 @@ TEST(Halvings, DoNotChangeTheEnergyWithoutAWord) {
         double const ratio = energy(rods.model, rods.x).total() / start;
         EXPECT_LT(ratio, 3.0);
         if (report.warnings.empty() && !(ratio > 0.9 && ratio < 1.1)) ++silent;
-        if (!report.warnings.empty()) EXPECT_TRUE(has(report.warnings.back(), " halved. Repeat the run"));
+        if (!report.warnings.empty()) {
+          EXPECT_TRUE(has(report.warnings.back(), " halved. Repeat the run"));
+        }
       } catch (Error const&) {
       }
     }
@@ -241,7 +243,9 @@ TEST(Halvings, CountsTheCostOfFailedAttempts) {
       sum.halved += last.halved;
       steps_with_halves += last.halved > 0;
       // three Newton solves at least: one or more failed ones, and those of the halves
-      if (last.halved > 0) EXPECT_GE(last.iterations, after + 2 * (last.halved + 1)) << height;
+      if (last.halved > 0) {
+        EXPECT_GE(last.iterations, after + 2 * (last.halved + 1)) << height;
+      }
       EXPECT_EQ(last.halved, last.rejected);
     }
     RunReport const& report = run.report();

@@ -127,7 +127,9 @@ TEST(NeutralFreedom, OfAPayloadIsItsSpin) {
                 std::vector<std::string>{"body \"payload\" turns about (0, 0, 1) through (0, 0, 0)"});
       EXPECT_LT((position(model, x, payload.at(Vec3(0, 0, 0))) - Vec3(0, 0, -length - eye.norm())).norm(), 1e-9);
       EXPECT_NEAR(std::abs(reaction(model, x, rope).f.z()), 3.0 * 9.81, 1e-9);
-      if (start.x() == 0.0 && eye.x() == 0.0) EXPECT_LT(std::abs(x.q[6]), 1e-12);  // its position is unchanged
+      if (start.x() == 0.0 && eye.x() == 0.0) {  // its position is unchanged
+        EXPECT_LT(std::abs(x.q[6]), 1e-12);
+      }
     }
 }
 

@@ -133,8 +133,12 @@ TEST(LinkRollerContact, HandsOverToTheNextLinkWithoutABump) {
                  "LinkRollerContact"},
                 (force - first.A.col(2) * (2e6 * d)).norm() / (2e6 * radius), 1e-12, {equals("s", s), 1.0});
     EXPECT_LT(moment.norm(), 1e-12 * 2e6 * radius * radius) << s;
-    if (std::abs(s - 0.5 * pitch) < e - 1e-9) EXPECT_EQ(touching, 2u) << s;
-    if (std::abs(s - 0.5 * pitch) > e + 1e-9) EXPECT_EQ(touching, 1u) << s;
+    if (std::abs(s - 0.5 * pitch) < e - 1e-9) {
+      EXPECT_EQ(touching, 2u) << s;
+    }
+    if (std::abs(s - 0.5 * pitch) > e + 1e-9) {
+      EXPECT_EQ(touching, 1u) << s;
+    }
     both += touching == 2;
   }
   EXPECT_GT(both, 20);

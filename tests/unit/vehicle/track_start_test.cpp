@@ -151,7 +151,9 @@ TEST(SettledTrack, LiesOnTheWheelsThatTheReferenceLiesOn) {
     for (int i = 0; i < m113::wheels; ++i) {
       double const gap = gap_above(settled(table[row].preload), i), expected = 1e-3 * gaps[row][std::size_t(i)];
       EXPECT_NEAR(gap, expected, out_of_place(table[row])) << "wheel " << i + 1 << " at " << table[row].preload;
-      if (expected == 0.0) EXPECT_LE(gap, 0.0) << "wheel " << i + 1 << " at " << table[row].preload;
+      if (expected == 0.0) {
+        EXPECT_LE(gap, 0.0) << "wheel " << i + 1 << " at " << table[row].preload;
+      }
     }
 }
 

@@ -31,12 +31,10 @@ struct StructureAction {
   template <class = void>  // compiled only if used
   static StructureAction in_frame(Frame<double> const& frame, Vec3 const& acceleration, Vec3 const& alpha,
                                   std::span<PlacedWrench const> loads) {
-    Mat3 const to_frame = frame.A.transpose();
-    Vec3 const omega = to_frame * frame.w;
-    StructureAction x{.b = to_frame * acceleration,
-                      .B = skew<double>(alpha) + skew<double>(omega) * skew<double>(omega)};
-    for (PlacedWrench const& l : loads)
-      x.loads.push_back({to_frame * (l.at - frame.r), {to_frame * l.w.f, to_frame * l.w.m}});
+    auto const local = [&frame](Vec3 const& x) { return transposed_product<double>(frame.A, x); };
+    Vec3 const omega = local(frame.w);
+    StructureAction x{.b = local(acceleration), .B = skew<double>(alpha) + skew<double>(omega) * skew<double>(omega)};
+    for (PlacedWrench const& l : loads) x.loads.push_back({local(l.at - frame.r), {local(l.w.f), local(l.w.m)}});
     return x;
   }
 };
