@@ -1,13 +1,21 @@
 #pragma once
-// Distance between the position mesh and the rotation mesh of the planar Lrvf, and its causes (thesis 2.5.1, 2.7).
-// Shared by the examples and their tests.
+// Distance between the position mesh and the rotation mesh of geometrically exact beams, and its causes (thesis 2.5.1,
+// 2.7). Shared by the examples and their tests.
 //
-// Consider an element with the relative rotation phi of its ends, the strains (eps, gamma) and the axes t1, t2 of its
-// middle. Over the element, the position mesh advances by l ((1 + eps) t1 + gamma t2), and the curve that the rotations
-// imply advances by l s t1 with s = sin(phi/2)/(phi/2). Hence the distance between the two positions of a node is
-// exactly
-//   sum l (eps t1 + gamma t2)  +  sum l (1 - s) t1  over the elements before the node.
-// The first sum is due to the strains. The second sum is an interpolation error of second order in l.
+// An element of length l has the chord dr between its nodes. Its strains Gamma = (eps, gamma) are those of dr in
+// axes A, for a straight reference:
+//   dr = l A (e1 + Gamma).
+// Let R be the rotation field of the element and <R> its mean. Along the element, the curve that the rotations imply
+// advances by the integral of t1 = R e1, which is l <R> e1. Hence the distance between the two positions of a node is
+//   sum l A Gamma  +  sum l (A - <R>) e1  over the elements before the node.
+// The first sum is due to the strains. The second sum is due to the interpolation:
+//   Lrvf     A is R in the middle of the element. In the plane <R> = s A with s = sin(phi/2)/(phi/2), for the relative
+//            rotation phi of the nodes. The second sum is sum l (1 - s) t1, of second order in l.
+//   Se3Beam  R and Gamma follow from one interpolation with r' = R (e1 + Gamma) and constant Gamma [Sonneville, Cardona
+//            & Brüls 2014, §4]. Hence A = <R>, and the second sum is zero for any mesh.
+// If the reference of an Lrvf is curved, the second sum also contains its chords. It is zero in the reference.
+#include <polybody/se3_beam.hpp>
+
 #include "chapter2.hpp"
 
 namespace chapter2 {
@@ -49,38 +57,73 @@ inline RigidFit rigid_fit(std::vector<Vec2> const& from, std::vector<Vec2> const
   return fit;
 }
 
-// The two meshes of one state. A gap is the position of a node on the position mesh minus its position on the
-// rotation mesh.
-struct Apart {
-  double gap = 0.0;                   // largest gap of all nodes [m]
-  Vec2 strain = Vec2::Zero();         // part of this gap due to the strains [m]
-  Vec2 interpolation = Vec2::Zero();  // part of this gap due to the interpolation [m]
-  double element = 0.0;               // largest difference between the two chord lengths of an element [m]
-  double bow = 0.0;                   // largest height of an element's implied arc above its chord [m]
-  RigidFit rigid;                     // fit of the nodes of the rotation mesh to the nodes of the position mesh
+template <class B>
+inline constexpr int dimension = B::world == World::plane ? 2 : 3;
+
+// Axes A of the strains of element e at the coordinates q.
+template <class B>
+Mat<double, dimension<B>, dimension<B>> strain_axes(B const& beam, Index e, std::span<double const> q) {
+  bool constexpr mean = std::is_same_v<B, planar::Se3Beam> || std::is_same_v<B, Se3Beam>;
+  if constexpr (B::world == World::plane) {
+    double const first = q[std::size_t(3 * e + 2)], last = q[std::size_t(3 * e + 5)], half = 0.5 * (last - first);
+    double const s = !mean ? 1.0 : std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
+    return s * Eigen::Rotation2Dd(0.5 * (first + last)).toRotationMatrix();
+  } else {
+    SectionTurn const at = beam.rotation_field({e, mean ? 0.0 : 0.5, 0.0, 0.0}, q);
+    if constexpr (mean) return at.R * left_jacobian<double>(beam.element_length() * at.K);  // mean of R exp(x l K)
+    return at.R;
+  }
+}
+
+// Largest distance of a node between the two meshes, and its two parts. The distance is the position of the node on the
+// position mesh minus its position on the rotation mesh.
+template <int dim>
+struct Gap {
+  double gap = 0.0;                                                 // [m]
+  Mat<double, dim, 1> strain = Mat<double, dim, 1>::Zero();         // part due to the strains [m]
+  Mat<double, dim, 1> interpolation = Mat<double, dim, 1>::Zero();  // part due to the interpolation [m]
+  double interpolation_of_all = 0.0;                                // largest of all nodes [m]
+};
+
+template <class B>
+Gap<dimension<B>> gap_of_meshes(B const& beam, std::span<double const> q) {
+  int constexpr dim = dimension<B>;
+  TwoMeshes<dim> const d = mesh_diagnostics(beam, q);
+  Gap<dim> out;
+  Mat<double, dim, 1> strain = Mat<double, dim, 1>::Zero();
+  for (Index e = 0; e < beam.elements(); ++e) {
+    typename B::Point middle;
+    middle.element = e;
+    middle.xi = 0.5;
+    Mat<double, dim, 1> const strains = Vec6(beam.section_strains(middle, q)).template head<dim>();
+    strain += beam.element_length() * (strain_axes(beam, e, q) * strains);
+    std::size_t const node = std::size_t(e) + 1;
+    Mat<double, dim, 1> const gap = d.position_nodes[node] - d.rotation_nodes[node], interpolation = gap - strain;
+    out.interpolation_of_all = std::max(out.interpolation_of_all, interpolation.norm());
+    if (gap.norm() <= out.gap) continue;
+    out.gap = gap.norm();
+    out.strain = strain;
+    out.interpolation = interpolation;
+  }
+  return out;
+}
+
+// The two meshes of one state in the plane.
+struct Apart : Gap<2> {
+  double element = 0.0;  // largest difference between the two chord lengths of an element [m]
+  double bow = 0.0;      // largest height of an element's implied arc above its chord [m]
+  RigidFit rigid;        // fit of the nodes of the rotation mesh to the nodes of the position mesh
 };
 
 template <class B>
 Apart meshes_apart(B const& beam, std::span<double const> q) {
   MeshDiagnostics const d = mesh_diagnostics(beam, q);
-  Apart out{.rigid = rigid_fit(d.rotation_nodes, d.position_nodes)};
-  double const l = beam.element_length();
-  Vec2 strain = Vec2::Zero(), interpolation = Vec2::Zero();
-  for (Index e = 0; e < beam.elements(); ++e) {
-    double const first = q[std::size_t(3 * e + 2)], last = q[std::size_t(3 * e + 5)], half = 0.5 * (last - first);
-    double const s = std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
-    Vec6 const at = beam.section_strains({e, 0.5, 0.0}, q);
-    Eigen::Rotation2Dd const axes(0.5 * (first + last));
-    strain += l * (axes * Vec2(at[0], at[1]));
-    interpolation += l * (axes * Vec2(1.0 - s, 0.0));
-    out.element = std::max(out.element, l * std::abs(std::hypot(1.0 + at[0], at[1]) - s));
-    out.bow = std::max(out.bow, 0.5 * l * std::abs(s * std::tan(0.5 * half)));  // l (1 - cos(half))/(2 half)
-    std::size_t const node = std::size_t(e) + 1;
-    double const gap = (d.position_nodes[node] - d.rotation_nodes[node]).norm();
-    if (gap <= out.gap) continue;
-    out.gap = gap;
-    out.strain = strain;
-    out.interpolation = interpolation;
+  Apart out{gap_of_meshes(beam, q), 0.0, 0.0, rigid_fit(d.rotation_nodes, d.position_nodes)};
+  for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e) {
+    auto const chord = [&](std::vector<Vec2> const& nodes) { return (nodes[e + 1] - nodes[e]).norm(); };
+    double const implied = chord(d.rotation_nodes), turn = beam.element_length() * d.rotation_curvature[e];
+    out.element = std::max(out.element, std::abs(chord(d.position_nodes) - implied));
+    out.bow = std::max(out.bow, 0.5 * std::abs(implied * std::tan(0.25 * turn)));  // l (1 - cos(turn/2))/turn
   }
   return out;
 }

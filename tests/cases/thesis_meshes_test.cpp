@@ -132,21 +132,74 @@ TEST(ThesisMeshes, PureBendingDiffersByASimilarFigure) {
   }
 }
 
-// The difference is the sum of strains and interpolation in any state. The implied curve is integrated with five
-// Gauss points, with an error of 4e-13 phi^10 for an element that rotates by phi.
-TEST(ThesisMeshes, StrainsAndInterpolationMakeTheGap) {
-  planar::Lrvf const b = beam(10);
-  std::vector<double> const q = nodes(10, [](double i) {
+/// Nodes of a state far from the reference.
+std::vector<double> any_nodes() {
+  return nodes(10, [](double i) {
     return Vec3(1.1 * i + 0.3 * std::sin(2.0 * i), 0.5 * std::sin(3.0 * i), 0.8 * std::cos(1.7 * i) - 0.8);
   });
+}
+
+// The difference is the sum of strains and interpolation in any state. The implied curve is integrated with five
+// Gauss points, with an error of 4e-13 phi^10 for an element that rotates by phi. The part of the interpolation of the
+// Lrvf is the sum of l (1 - s) t1.
+TEST(ThesisMeshes, StrainsAndInterpolationMakeTheGap) {
+  planar::Lrvf const b = beam(10);
+  std::vector<double> const q = any_nodes();
   Apart const a = meshes_apart(b, q);
   MeshDiagnostics const d = mesh_diagnostics(b, q);
-  std::size_t node = 0;
-  for (std::size_t i = 1; i <= 10; ++i)
-    if ((d.position_nodes[i] - d.rotation_nodes[i]).norm() == a.gap) node = i;
-  ASSERT_GT(node, 0u);
-  EXPECT_LT((a.strain + a.interpolation - (d.position_nodes[node] - d.rotation_nodes[node])).norm(), 2e-11);
+  Vec2 interpolation = Vec2::Zero(), found = Vec2::Zero();
+  for (std::size_t i = 1; i <= 10 && found.isZero(0.0); ++i) {
+    double const first = q[3 * i - 1], last = q[3 * i + 2], half = 0.5 * (last - first);
+    interpolation += (1.0 - std::sin(half) / half) * (Eigen::Rotation2Dd(0.5 * (first + last)) * Vec2(1.0, 0.0));
+    if ((d.position_nodes[i] - d.rotation_nodes[i]).norm() == a.gap) found = interpolation;
+  }
+  EXPECT_LT((a.interpolation - found).norm(), 2e-11);
   EXPECT_GT(a.interpolation.norm(), 0.1);
+}
+
+Claim only_strains(char const* formulation) {
+  return closed("part of the interpolation in the distance of the two meshes, of the length",
+                "r' = R (e1 + Gamma) with constant Gamma", formulation);
+}
+
+// An element of Se3Beam has one interpolation of position and rotation. The whole distance is due to the strains.
+TEST(ThesisMeshes, TheGapOfAnSe3BeamIsThatOfItsStrains) {
+  auto const b = planar::Se3Beam::from(bar(low, 7850.0), 10);
+  Apart const a = meshes_apart(b, any_nodes());
+  EXPECT_LT(a.interpolation_of_all, 2e-11);
+  EXPECT_NEAR(a.strain.norm(), a.gap, 2e-11);
+  EXPECT_GT(a.gap, 1.0);
+}
+
+/// The arm of low stiffness after 4 s of the ramp of 4.5 s (Figure 2.7), under an axial force at the tip.
+template <class B>
+Apart arm(Index n, double axial_force) {
+  RobotArm<B> arm(bar(low, 7850.0), n, 4.5, axial_force);
+  State x = arm.model.reference_state();
+  simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 4.0, .step = 5e-3}).run();
+  return meshes_apart(arm.arm.body(), coordinates_of(arm.model, x, arm.arm));
+}
+
+TEST(ThesisMeshes, TheInterpolationPartOnTheArm) {
+  for (double const force : {0.0, 100e3}) {
+    Apart const one = arm<planar::Se3Beam>(10, force), two = arm<planar::Lrvf>(10, force);
+    Instance const at{equals("force at the tip", force), 1.0};
+    held_within(only_strains("planar Se3Beam, low stiffness, ramp of 4.5 s"), one.interpolation_of_all / length, 1e-12,
+                at);
+    EXPECT_NEAR(one.strain.norm(), one.gap, 1e-12 * length);
+    EXPECT_GT(one.gap, 0.1);
+    EXPECT_GT(two.interpolation_of_all, 1e-3);
+  }
+}
+
+// phi is proportional to l, so that sum l (1 - s) t1 is of second order. The angles at the nodes also depend on the
+// mesh.
+TEST(ThesisMeshes, TheInterpolationPartOfTheLrvfIsOfSecondOrder) {
+  double const coarse = arm<planar::Lrvf>(20, 0.0).interpolation_of_all,
+               fine = arm<planar::Lrvf>(40, 0.0).interpolation_of_all;
+  held({"thesis, ch. 2", "order of the interpolation part of the distance", By::closed_form, "sum of l phi^2/24",
+        "Lrvf, low stiffness, 20 and 40 elements"},
+       std::log2(coarse / fine), 2.0, 0.1);
 }
 
 }  // namespace thesis_meshes_test

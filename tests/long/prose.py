@@ -7,7 +7,7 @@ MARK = re.compile(rf"({NUMBER})<!--(<= |>= )?([^/>]+)/([^/>]+)/([^/>]+)-->")
 # Numbers that need no source: code, tables of cases, marked numbers; identifiers, links, names of figures, years of
 # sources, powers of ten after a number.
 MADE = [r"```.*?```", r"<!-- tests/long: .*?<!-- end -->", MARK.pattern]
-SILENT = [r"`[^`]*`", r"\]\([^)]*\)", r"\[[^\]]*\d{4}[a-z]?\]",
+SILENT = [r"`[^`]*`", r"\]\([^)]*\)", r"\[[^\]\n]*\d{4}[a-z]?\]",
           r"(?:Figures?|Fig\.|Tables?|Chapters?|ch\.|§)\s*\(?\d+(?:\.\d+)*[ab]?\)?(?:(?:,| and| to|–|-)\s*\(?\d+(?:\.\d+)+[ab]?\)?)*",
           r"PhD thesis, [^,]*,\s*\d{4}", r"at Chicago, \d{4}, Chapter \d",
           r"·10[⁻⁰¹²³⁴-⁹]+", r"\[10[⁻⁰¹²³⁴-⁹]+\]"]

@@ -45,6 +45,9 @@ class Sources(unittest.TestCase):
         self.assertEqual(len(numbers_without_source(text, {}, {"10 s": "an option", "by 1.5 %": "a test"})), 1)
         self.assertEqual(numbers_without_source(text, {"links": ()}, {"10 s": "an option", "by 1.5 %": "a test"}), [])
 
+    def test_a_citation_is_in_one_line(self):
+        self.assertEqual(len(numbers_without_source("See [a](#a).\nOff by 1.5 %.\nBy [Craig & Bampton 1968].", {}, {})), 1)
+
     def test_a_phrase_is_whole(self):
         self.assertEqual(len(numbers_without_source("0.5 s and 15 s", {}, {"5 s": "an option"})), 3)
 
