@@ -1,6 +1,7 @@
 // Four-bar mechanism with a misaligned hinge (M1), and lateral buckling of a driven beam (M2).
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/buckling_beam.hpp"
 #include "../support/misaligned_four_bar.hpp"
@@ -38,6 +39,7 @@ void add_four_bar(Formulations& to) {
   std::vector<double> const steps{0.1, 0.05, 0.025, 0.0125, 0.00625};
   char const* const small = "small deformation in a floating frame";
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{2, 4, 8, 16, 32}, steps}, four_bar_of<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {{2, 4, 8, 16, 32}, steps}, four_bar_of<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line", {{2, 4, 8, 16}, steps},
                                 four_bar_of<AncfBeam<ElasticLine>>);
   to.add<Ffr>("FFR, nodal coordinates", small, {{1, 2, 4, 8}, steps}, four_bar_of<Ffr>);
@@ -58,6 +60,7 @@ void add_buckling(Formulations& to) {
   std::vector<double> const steps{2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
   char const* const small = "small deformation in a floating frame";
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{8, 16, 32, 64, 128}, steps}, buckling<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {{8, 16, 32, 64, 128}, steps}, buckling<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, buckling<AncfBeam<ElasticLine>>);
   to.add<Ffr>("FFR, nodal coordinates", small, {{2, 4, 8, 16}, steps}, buckling<Ffr>);

@@ -2,6 +2,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/flying_rod.hpp"
 #include "problem.hpp"
@@ -31,6 +32,7 @@ void add(Formulations& to) {
   to.add<Rigid<>, MeshKind::none>("rigid body", "rigid bar", {{}, steps}, flight<Rigid<>>);
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {linear, steps}, flight<Lrvf<>>);
   to.add<Lrvf<Directors>>("LRVF in space, directors", "rigid sections", {linear, steps}, flight<Lrvf<Directors>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {linear, steps}, flight<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, flight<AncfBeam<ElasticLine>>);
   to.add<Ffr>("FFR, nodal coordinates", small, {{2, 4, 8, 16}, steps}, flight<Ffr>);

@@ -1,6 +1,7 @@
 // Spin-up of a cantilever (D2): geometric stiffening by the axial force of the rotation.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/spin_up_arm.hpp"
 #include "problem.hpp"
@@ -42,6 +43,7 @@ void add(Formulations& to) {
   std::vector<double> const steps{0.02, 0.01, 0.005, 0.0025}, of_frames{0.04, 0.02, 0.01, 0.005, 0.0025};
   std::vector<Index> const cubic{2, 4, 8, 16, 32}, linear{5, 10, 20, 40, 80, 160};
   to.add<planar::Lrvf>("LRVF in the plane", "rigid sections", {linear, steps}, arm<planar::Lrvf>);
+  to.add<planar::Se3Beam>("SE(3) beam in the plane", "rigid sections", {linear, steps}, arm<planar::Se3Beam>);
   to.add<planar::AncfCable<planar::GreenStrain>>("ANCF cable, Green strain", "cable, Green strain", {cubic, steps},
                                                  arm<planar::AncfCable<planar::GreenStrain>>);
   to.add<planar::AncfCable<planar::EngineeringStrain>>("ANCF cable, engineering strain", "cable, engineering strain",
@@ -51,6 +53,7 @@ void add(Formulations& to) {
   to.add<planar::Ffr>("FFR, nodal coordinates", small, {cubic, of_frames}, arm<planar::Ffr>);
   to.add<planar::Ffr, MeshKind::modes>("FFR, modal coordinates", small, {{1, 2, 4, 8}, of_frames}, arm<planar::Ffr>);
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{5, 10, 20, 40, 80}, steps}, arm<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {{5, 10, 20, 40, 80}, steps}, arm<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, arm<AncfBeam<ElasticLine>>);
 }

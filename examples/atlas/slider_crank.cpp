@@ -1,6 +1,7 @@
 // Slider-crank with a flexible coupler (D8), in the plane and in space.
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/flexible_slider_crank.hpp"
 
@@ -32,12 +33,14 @@ void add(Formulations& to) {
   using Engineering = planar::AncfCable<planar::EngineeringStrain>;
   char const* const small = "small deformation in a floating frame";
   to.add<planar::Lrvf>("LRVF in the plane", "rigid sections", {linear, steps}, in_plane<planar::Lrvf>);
+  to.add<planar::Se3Beam>("SE(3) beam in the plane", "rigid sections", {linear, steps}, in_plane<planar::Se3Beam>);
   to.add<Green>("ANCF cable, Green strain", "cable, Green strain", {cubic, steps}, in_plane<Green>);
   to.add<Engineering>("ANCF cable, engineering strain", "cable, engineering strain", {cubic, steps},
                       in_plane<Engineering>);
   to.add<planar::Ffr>("FFR, nodal coordinates", small, {cubic, steps}, in_plane<planar::Ffr>);
   to.add<planar::Ffr, MeshKind::modes>("FFR, modal coordinates", small, {{1, 3, 5, 7}, steps}, in_plane<planar::Ffr>);
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {linear, steps}, in_space<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {linear, steps}, in_space<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{2, 4, 8, 16, 32}, steps}, in_space<AncfBeam<ElasticLine>>);
   to.add<Ffr, MeshKind::modes>("FFR in space, modal coordinates", small, {{1, 3, 5, 7}, steps}, in_space<Ffr>);

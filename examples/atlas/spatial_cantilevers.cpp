@@ -1,6 +1,7 @@
 // The Princeton beam (S6) and the 45° bend of Bathe & Bolourchi (S7) under a force at the tip that grows slowly.
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/spatial_cantilevers.hpp"
 #include "problem.hpp"
@@ -43,6 +44,7 @@ void add_princeton(Formulations& to) {
   std::vector<double> const steps{4e-2, 2e-2, 1e-2, 5e-3, 2.5e-3, 1.25e-3};
   char const* const small = "small deformation in a floating frame";
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, princeton<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, princeton<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, princeton<AncfBeam<ElasticLine>>);
   to.add<AncfBeam<Continuum<>>>("ANCF beam, continuum", "deformable sections, continuum", {{4, 8, 16, 32, 64}, steps},
@@ -66,6 +68,7 @@ AnyCase solid_bend(FormulationMesh const& mesh) {
 void add_bend(Formulations& to) {
   std::vector<double> const steps{8.0, 4.0, 2.0, 1.0, 0.5, 0.25};
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, bend<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {{4, 8, 16, 32, 64}, steps}, bend<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line",
                                 {{4, 8, 16, 32, 64}, steps}, bend<AncfBeam<ElasticLine>>);
   to.add<AncfBeam<Continuum<>>>("ANCF beam, continuum", "deformable sections, continuum", {{4, 8, 16, 32, 64}, steps},

@@ -1,5 +1,6 @@
 // The very flexible pendulum (D6a), a cable whose bending stiffness is negligible.
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../support/spinning_pendulum.hpp"
 #include "problem.hpp"
@@ -32,6 +33,7 @@ void add(Formulations& to) {
   to.add<Engineering>("ANCF cable, engineering strain", "cable, engineering strain", {cubic, steps},
                       pendulum<Engineering>);
   to.add<Lrvf<>>("LRVF in space", "rigid sections", {linear, steps}, pendulum<Lrvf<>>);
+  to.add<Se3Beam>("SE(3) beam in space", "rigid sections", {linear, steps}, pendulum<Se3Beam>);
   to.add<AncfBeam<ElasticLine>>("ANCF beam, elastic line", "deformable sections, elastic line", {cubic, steps},
                                 pendulum<AncfBeam<ElasticLine>>);
 }
