@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <polybody/bodies/shared/family.hpp>
 #include <polybody/io/plot.hpp>
@@ -50,19 +51,14 @@ inline constexpr std::array<std::array<std::string_view, 2>, 6> policy_dashes{{{
                                                                                {"Bushing", "8 3 2 3"},
                                                                                {"NonlinearBushing", "8 3 2 3 2 3"}}};
 
-/// Policy of joints and its colour, an index into the colours of plot.hpp.
-struct PolicyColour {
-  std::string_view policy;  ///< name of the policy
-  int colour = 0;           ///< index of the colour
-};
-
-/// Colours of comparisons in which bodies of one family are joined by several policies.
-inline constexpr std::array<PolicyColour, 6> policy_colours{{{"Constraint", 0},
-                                                             {"Penalty", 1},
-                                                             {"PenaltyPerEquation", 1},
-                                                             {"Bushing", 2},
-                                                             {"NonlinearBushing", 2},
-                                                             {"JointCoordinates", 4}}};
+/// Colour of each policy by its name, an index into the colours of plot.hpp. It applies if the formulations that a film
+/// or figure compares have the same body.
+inline constexpr std::array<std::pair<std::string_view, int>, 6> policy_colours{{{"Constraint", 0},
+                                                                                 {"Penalty", 1},
+                                                                                 {"PenaltyPerEquation", 1},
+                                                                                 {"Bushing", 2},
+                                                                                 {"NonlinearBushing", 2},
+                                                                                 {"JointCoordinates", 4}}};
 
 /// Style of the formulation whose body has the `family`, with the line pattern of the `policy`. A family without a
 /// style has that of `families::other`. A policy that is not in `policy_dashes` has the line pattern of the family.
