@@ -162,7 +162,7 @@ struct BeamCase {
     State const start = beam.model.reference_state();
     auto const tip = beam.beam.at(length);
     std::function<void(M const&, State const&)> observer;
-    if (film) observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), beam.beam, solid_bar(low, o.density));
+    if (film) observer = BarFilm<M, typename F::BodyType>(scene_of(*film, f), beam.beam, solid_bar(low, o.density));
     return Scenario<M>{std::move(beam.model),
                        start,
                        {.end_time = std::min(o.end_time, 4.0), .step = o.step},

@@ -16,6 +16,12 @@ inline FilmOptions film_options(std::filesystem::path const& viewer, std::string
           .floor = FilmFloor::behind};
 }
 
+// Scene of a formulation, in the colour of its body.
+template <class F>
+FilmScene& scene_of(Film& film, F const& formulation) {
+  return film.scene(formulation.name, formulation_family<typename F::BodyType>);
+}
+
 // Observer of a run that records the frames of one scene; each call passes the model.
 template <class M, class B>
 class BarFilm {

@@ -159,8 +159,7 @@ struct ArmCase {
     outputs.push_back({"lag of the tip [m]",
                        [tip, this](M const& m, State const& x) { return lag_of(x.t, position(m, x, tip), ramp); }});
     std::function<void(M const&, State const&)> observer;
-    if (film)
-      observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), arm.arm, solid_bar(stiffness, o.density));
+    if (film) observer = BarFilm<M, typename F::BodyType>(scene_of(*film, f), arm.arm, solid_bar(stiffness, o.density));
     return Scenario<M>{std::move(arm.model),
                        start,
                        {.end_time = o.end_time > 0.0 ? o.end_time : 1.5 * ramp, .step = o.step},

@@ -238,7 +238,7 @@ Scenario<AnyModel> TrackCase::scenario(std::string const& name, Built const& bui
   if (scene)
     watch->film(scene);
   else if (s.film)
-    watch->film(std::make_shared<VehicleScene>(*s.film, name, vehicle, s.film_until));
+    watch->film(std::make_shared<VehicleScene>(*s.film, title_of(name), formulation_of(name), vehicle, s.film_until));
   auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](AnyModel const&, State const& x) {
     watch->see(x, (*out)[mine]);
   };

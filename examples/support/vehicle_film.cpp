@@ -33,13 +33,29 @@ void add_sums_of_contacts(FilmScene& scene, FilmArrows arrows, m113::Track const
     if (sum.weight > 0.0) scene.arrow(arrows, sum.place / sum.weight, sum.force / 1e3);
 }
 
-// Name of a scene for a run of the comparison of pins; other names are unchanged.
+}  // namespace
+
 std::string title_of(std::string const& run) {
   for (std::string_view const policy : {"constraint", "penalty", "bushing", "joint-coordinates"})
     if (run.starts_with(policy)) return "rigid links, pins by " + run;
   return run == "ancf" ? "flexible links: ANCF cables" : run;
 }
-}  // namespace
+
+std::string_view formulation_of(std::string const& run) {
+  static std::map<std::string, std::string_view> const known{{"constraint", "Constraint"},
+                                                             {"penalty", "Penalty"},
+                                                             {"bushing", "Bushing"},
+                                                             {"joint-coordinates", "JointCoordinates"},
+                                                             {"ancf", families::cable_green},
+                                                             {"beam", families::beam_elastic_line},
+                                                             {"continuum", families::beam_continuum},
+                                                             {"lrvf", families::lrvf_in_space},
+                                                             {"se3", families::se3_beam_in_space},
+                                                             {"ffr", families::ffr_modal},
+                                                             {"fe", families::ffr_nodal}};
+  auto const found = known.find(run.substr(0, run.find_first_of(", ")));
+  return found != known.end() ? found->second : std::string_view();
+}
 
 std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& title) {
   return std::make_shared<Film>(FilmOptions{.viewer = viewer,
@@ -50,8 +66,9 @@ std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& ti
                                             .follow = "hull"});
 }
 
-VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints)
-    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(title_of(name))), until_(end_time) {
+VehicleScene::VehicleScene(Film& film, std::string const& name, std::string_view formulation, AnyVehicle const& vehicle,
+                           double end_time, bool joints)
+    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name, formulation)), until_(end_time) {
   scene_.colour(axial_stress_colours());
   contacts_ = scene_.arrows("contact forces on links, sums for each partner", "kN");
   if (joints) joints_ = scene_.arrows("forces of joints", "kN", false);

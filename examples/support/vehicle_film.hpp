@@ -10,12 +10,20 @@ namespace chapter3 {
 // Creates a film whose camera follows the hull.
 std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& title);
 
+// Title of the scene of a run of the comparison of pins; other names are unchanged.
+std::string title_of(std::string const& run);
+// Family of the links of a run, or policy of the pins of rigid links, which determines the colour of the scene; empty
+// for other names.
+std::string_view formulation_of(std::string const& run);
+
 // Scene of one run.
 class VehicleScene {
  public:
+  // \param formulation see formulation_of
   // \param end_time last time of the film [s]
   // \param joints true: includes the forces of joints, which are a sixth of the file
-  VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints = true);
+  VehicleScene(Film& film, std::string const& name, std::string_view formulation, AnyVehicle const& vehicle,
+               double end_time, bool joints = true);
 
   // Adds a point to each history unless the last point is less than 5 ms earlier. `numbers` are pairs of "label [unit]"
   // and a value.

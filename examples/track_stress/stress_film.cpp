@@ -63,7 +63,7 @@ StressScene::StressScene(Options const& o, std::string const& name, AnyVehicle c
   bool const decoupled = !links_.empty();
   scene_ = std::make_shared<VehicleScene>(
       *o.film, decoupled ? "decoupled: FFR links after a run of rigid ones" : "coupled: " + links_in_words(name),
-      vehicle, o.film_until, false);
+      decoupled ? families::ffr_modal : formulation_of(name), vehicle, o.film_until, false);
   if (!decoupled) return;
   loads_ = std::make_shared<LoadRecorder>(model_.system());
   for (RigidLink const& one : links_) one.add(*loads_);

@@ -146,10 +146,12 @@ function readArrows(r, a, frames) {
   };
 }
 
-function readScene(r, s) {
+function readScene(r, s, k) {
+  const colour = s.colour ?? k;
+  if (!Number.isInteger(colour) || colour < 0) r.refuse('a scene has no colour');
   const times = r.rising(r.array(s.times, ['f8']));
   if (times.length === 0) r.refuse('a scene has no frame');
-  const scene = {name: r.text(s.name), times, withoutShape: r.list(s.withoutShape ?? []).map((name) => r.text(name))};
+  const scene = {name: r.text(s.name), colour, times, withoutShape: r.list(s.withoutShape ?? []).map((name) => r.text(name))};
   scene.scalars = r.list(s.scalars).map(
       (c) => ({label: r.text(c.label), unit: r.text(c.unit), low: r.number(c.low), high: r.number(c.high)}));
   scene.shapes = r.list(s.shapes).map((shape) => readShape(r, shape));
@@ -181,7 +183,7 @@ export function decodeFilm(bytes) {
       up: r.vector(contents.up),
       follow: r.text(contents.follow),
       floor: r.text(contents.floor),
-      scenes: r.list(contents.scenes).map((s) => readScene(r, s)),
+      scenes: r.list(contents.scenes).map((s, k) => readScene(r, s, k)),
     };
     if (film.scenes.length === 0) r.refuse('there is no scene');
     return film;

@@ -77,7 +77,7 @@ class Player {
       name.textContent = scene.name;
       if (this.film.scenes.length > 1 && this.plots.length > 0) {
         const dot = document.createElement('i');
-        dot.style.background = palette[k % palette.length];
+        dot.style.background = palette[scene.colour % palette.length];
         name.prepend(dot);
       }
       cell.append(name);

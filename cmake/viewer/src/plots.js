@@ -10,9 +10,9 @@ export class Plot {
     this.label = label;
     this.range = range;
     this.curves = [];
-    film.scenes.forEach((scene, k) => {
+    film.scenes.forEach((scene) => {
       for (const plot of scene.plots)
-        if (plot.label === label) this.curves.push({...plot, name: scene.name, colour: palette[k % palette.length]});
+        if (plot.label === label) this.curves.push({...plot, name: scene.name, colour: palette[scene.colour % palette.length]});
     });
     this.unit = this.curves[0].unit;
     this.low = Infinity;

@@ -10,6 +10,7 @@
 
 #include <polybody/io/atomic_file.hpp>
 #include <polybody/io/film_scene.hpp>
+#include <polybody/io/formulation_style.hpp>
 #include <polybody/io/text_files.hpp>
 #include <polybody/math/checksum.hpp>
 
@@ -63,14 +64,16 @@ struct ScalarRange {
 /// Table of contents of one scene. The numbers of the scene are appended to `arrays`.
 class SceneContents {
  public:
-  SceneContents(FilmScene const& scene, FilmArrays& arrays) : scene_(scene), arrays_(arrays) {
+  SceneContents(FilmScene const& scene, int colour, FilmArrays& arrays)
+      : scene_(scene), colour_(colour), arrays_(arrays) {
     ranges_.resize(scene.scalars().size());
     for (FilmPart const& part : scene.parts())
       for (std::size_t k = 0; k < ranges_.size(); ++k) ranges_[k].see(part.scalars[k]);
   }
 
   std::string json() {
-    std::string text = "{\"name\":" + json_text(scene_.name()) + ",\"times\":" + arrays_.add(scene_.times());
+    std::string text = "{\"name\":" + json_text(scene_.name()) + ",\"colour\":" + std::to_string(colour_) +
+                       ",\"times\":" + arrays_.add(scene_.times());
     text += ",\"withoutShape\":" + json_list(scene_.invisible(), [](std::string const& s) { return json_text(s); });
     text += ",\"scalars\":[";
     for (std::size_t k = 0; k < ranges_.size(); ++k) text += (k ? "," : "") + scalar(k);
@@ -138,19 +141,38 @@ class SceneContents {
   }
 
   FilmScene const& scene_;
+  int colour_;
   FilmArrays& arrays_;
   std::vector<ScalarRange> ranges_;
 };
+
+/// Colours of the scenes in plots, indices into the colours of plot.hpp. A scene has its preferred colour if no earlier
+/// scene has it, otherwise the first colour that no scene has. From nine scenes on, colours repeat.
+template <class = void>
+std::vector<int> scene_colours(std::deque<FilmScene> const& scenes) {
+  std::vector<int> colours(scenes.size(), -1);
+  auto const taken = [&](int colour) { return std::ranges::count(colours, colour) > 0; };
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (int const colour = scenes[i].preferred_colour(); colour >= 0 && !taken(colour)) colours[i] = colour;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (colours[i] >= 0) continue;
+    int colour = 0;
+    while (colour < int(palette.size()) && taken(colour)) ++colour;
+    colours[i] = colour < int(palette.size()) ? colour : int(i % palette.size());
+  }
+  return colours;
+}
 
 /// Encodes all scenes as bytes.
 /// \param page JSON members of the table of contents except the scenes
 template <class = void>
 std::string film_bytes(std::string const& page, std::deque<FilmScene> const& scenes) {
   FilmArrays arrays;
+  std::vector<int> const colours = scene_colours(scenes);
+  auto colour = colours.begin();
   std::string contents =
-      '{' + page +
-      ",\"scenes\":" + json_list(scenes, [&](FilmScene const& scene) { return SceneContents(scene, arrays).json(); }) +
-      '}';
+      '{' + page + ",\"scenes\":" +
+      json_list(scenes, [&](FilmScene const& scene) { return SceneContents(scene, *colour++, arrays).json(); }) + '}';
   contents.resize((contents.size() + 7) / 8 * 8, ' ');
   std::string const& numbers = arrays.bytes();
   std::string bytes(film_magic);
@@ -239,12 +261,15 @@ class Film {
   }
 
   /// Adds a scene with this `name`. The reference remains valid as long as the film exists.
+  /// \param formulation family of the body, such as `formulation_family<Lrvf<>>`, or name of the policy of the joints.
+  /// It determines the colour of the scene in plots, as in other figures (`formulation_colour`). With other names, or
+  /// if an earlier scene has this colour, the scene has the first unused colour.
   /// \throws InvalidInput if another scene has the same name.
-  FilmScene& scene(std::string name) {
+  FilmScene& scene(std::string name, std::string_view formulation = {}) {
     for (FilmScene const& other : scenes_)
       if (other.name() == name)
         throw InvalidInput("film.scene", {"Film: duplicate scene name \"", ErrorObject{name}, "\"."});
-    return scenes_.emplace_back(std::move(name), options_.frames_per_second);
+    return scenes_.emplace_back(std::move(name), options_.frames_per_second, formulation_colour(formulation));
   }
 
   std::size_t scenes() const { return scenes_.size(); }  ///< number of scenes

@@ -96,7 +96,9 @@ struct FilmArrows {
 class FilmScene {
  public:
   /// Scene without frames, with this number of `frames_per_second` [1/s]. Programs call `Film::scene` instead.
-  FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
+  /// \param colour colour of the formulation, see `formulation_colour`; −1: none
+  FilmScene(std::string name, double frames_per_second, int colour = -1)
+      : name_(std::move(name)), interval_(1.0 / frames_per_second), preferred_colour_(colour) {}
 
   /// Adds a scalar that colours the parts.
   /// \throws InvalidInput after the first frame, or if the scene already has a scalar with this label.
@@ -197,6 +199,7 @@ class FilmScene {
 
   std::string const& name() const { return name_; }            ///< name given to `Film::scene`
   std::vector<double> const& times() const { return times_; }  ///< times of the frames [s]
+  int preferred_colour() const { return preferred_colour_; }   ///< index of the formulation's colour; −1: none
   bool planar() const { return planar_; }                      ///< true if all bodies with a shape are planar
   /// Names of the bodies without a shape, if the first frame is that of a `Visual`.
   std::vector<std::string> const& invisible() const { return invisible_; }
@@ -283,6 +286,7 @@ class FilmScene {
 
   std::string name_;
   double interval_, next_ = -std::numeric_limits<double>::infinity();
+  int preferred_colour_;
   bool planar_ = false;
   std::vector<std::string> invisible_;
   std::vector<double> times_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <polybody/bodies/shared/family.hpp>
 #include <polybody/io/plot.hpp>
@@ -31,8 +32,8 @@ inline constexpr std::array<FormulationStyle, 12> formulation_styles{{
     {families::lrvf, 0, detail::point_types[0], ""},
     {families::lrvf_in_space, 0, detail::point_types[0] - 1, "9 3"},
     {families::cable_engineering, 1, detail::point_types[1], ""},
-    {families::cable_green, 2, detail::point_types[2], ""},
-    {families::beam_elastic_line, 3, detail::point_types[3], ""},
+    {families::beam_elastic_line, 2, detail::point_types[2], ""},
+    {families::cable_green, 3, detail::point_types[3], ""},
     {families::ffr_nodal, 4, detail::point_types[4], ""},
     {families::ffr_modal, 4, detail::point_types[4] - 1, "9 3"},
     {families::beam_continuum, 5, detail::point_types[5], ""},
@@ -50,6 +51,15 @@ inline constexpr std::array<std::array<std::string_view, 2>, 6> policy_dashes{{{
                                                                                {"Bushing", "8 3 2 3"},
                                                                                {"NonlinearBushing", "8 3 2 3 2 3"}}};
 
+/// Colour of each policy by its name, an index into the colours of plot.hpp. It applies if the formulations that a film
+/// or figure compares have the same body.
+inline constexpr std::array<std::pair<std::string_view, int>, 6> policy_colours{{{"Constraint", 0},
+                                                                                 {"Penalty", 1},
+                                                                                 {"PenaltyPerEquation", 1},
+                                                                                 {"Bushing", 2},
+                                                                                 {"NonlinearBushing", 2},
+                                                                                 {"JointCoordinates", 4}}};
+
 /// Style of the formulation whose body has the `family`, with the line pattern of the `policy`. A family without a
 /// style has that of `families::other`. A policy that is not in `policy_dashes` has the line pattern of the family.
 template <class = void>  // compiled where it is used
@@ -60,6 +70,15 @@ FormulationStyle formulation_style(std::string_view family, std::string_view pol
   for (auto const& [name, dash] : policy_dashes)
     if (name == policy) style.dash = dash;
   return style;
+}
+
+/// Colour of a formulation by its `name`, which is a family or a policy: an index into the colours of plot.hpp, or −1
+/// for other names.
+template <class = void>
+int formulation_colour(std::string_view name) {
+  for (auto const& [policy, colour] : policy_colours)
+    if (policy == name) return colour;
+  return formulation_style(name).colour;
 }
 
 namespace detail {

@@ -286,7 +286,8 @@ struct EquilibriumPath {
         "equilibrium.singular",
         {"equilibrium: the stiffness is singular", place(), ", first at ", ErrorObject{system.name_of(i)},
          ". No stiffness resists this motion: ", name_of_motion(system, least.motion(k), i),
-         ". The loads excite this motion. Fix every body, or pass a limit point with equilibrium_path."});
+         ". The loads excite this motion. Fix every body, or pass a limit point with equilibrium_path. A slack rope or "
+         "an open contact has no stiffness: replace it by a spring or a joint, or run until the motion is damped."});
   }
   /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {

@@ -269,6 +269,9 @@ TEST(FormulationStyles, AreFixedAndDistinct) {
   EXPECT_EQ(formulation_style(families::lrvf).marker, detail::point_types[0]);
   EXPECT_TRUE(formulation_style(families::lrvf_in_space).open());
   EXPECT_EQ(formulation_style("no family").family, families::other);
+  EXPECT_EQ(formulation_colour(families::lrvf), 0);
+  EXPECT_EQ(formulation_colour("Bushing"), 2);
+  EXPECT_EQ(formulation_colour("no family"), -1);
   EXPECT_NE(formulation_style(families::lrvf, "Penalty").dash, formulation_style(families::lrvf).dash);
 }
 

@@ -49,11 +49,12 @@ for (const [place, type, first, count] of places)
   for (const bad of [`["${type}",${first},${Number(count) + 1000000}]`, `["${type}",${Number(first) + 1},${count}]`, `["${type}",-8,${count}]`, '7', '["x1",0,0]', 'null', '{}'])
     if (bad !== 'null' || !text.includes(`"scalars":[${place}`)) refused(`${bad} for ${place}`, () => decodeFilm(withTable(text.replace(place, bad))));
 for (const [from, to] of [['"shape":0', '"shape":99'], ['"shape":0', '"shape":-1'], ['"scenes":[', '"scenes":7,"x":['], ['"parts":[', '"parts":[null,'], ['{"title"', '[{"title"'],
-                          ['"up":[', '"up":["a",'], ['"step":', '"step":null,"x":'], ['"name":', '"name":{},"x":']])
+                          ['"up":[', '"up":["a",'], ['"step":', '"step":null,"x":'], ['"name":', '"name":{},"x":'], ['"colour":', '"colour":-1,"x":'], ['"colour":', '"colour":"red","x":']])
   refused(`${to} for ${from}`, () => decodeFilm(withTable(text.replace(from, to))));
 
 const film = decodeFilm(bytes);
 for (const [s, scene] of film.scenes.entries()) {
+  console.log('colour', s, 0, 0, scene.colour);
   for (let f = 0; f < scene.times.length; ++f)
     for (const [p, part] of scene.parts.entries()) {
       console.log('part', s, f, p, ...pointsOf(scene, part, f, new Float64Array(scene.shapes[part.shape].points.length)));

@@ -83,7 +83,7 @@ struct FilmFiles : testing::Test {
 
   /// One scene with all kinds of content; also the same states for ParaView, if a collection is named.
   void record(Film& film, std::string const& name, fs::path const& collection = {}) {
-    FilmScene& scene = film.scene(name);
+    FilmScene& scene = film.scene(name, formulation_family<Cable>);
     scene.colour(axial_stress_colours());
     FilmArrows const forces = scene.arrows("force", "N");
     std::optional<VtkWriter> writer;
@@ -123,6 +123,7 @@ TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
   EXPECT_EQ(code, 0) << text_of(folder / "found.txt").substr(0, 2000);
   std::ifstream found(folder / "found.txt");
   int points = 0, scalars = 0, arrows = 0, plots = 0;
+  std::vector<double> colours;
   std::map<std::pair<int, int>, int> of_frame;
   for (std::string line; std::getline(found, line);) {
     std::istringstream words(line);
@@ -152,6 +153,8 @@ TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
       ++arrows;
       std::vector<double> const wanted{double(i), double(frame), 0, -5.0 * frame, double(i), 40};
       for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(numbers[c], wanted[c], c < 3 ? 0.0 : 0.5 * 50 / 32767.0 + 1e-6);
+    } else if (what == "colour") {
+      colours.push_back(numbers.at(0));
     } else if (what == "plot") {
       ASSERT_EQ(numbers.size(), 2u * frames);
       for (int i = 0; i < frames; ++i, ++plots) EXPECT_NEAR(numbers[std::size_t(frames + i)], 1.0 + 0.1 * i, 1e-6);
@@ -161,6 +164,23 @@ TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
   EXPECT_EQ(scalars, 2 * frames * 24);
   EXPECT_EQ(arrows, 20);
   EXPECT_EQ(plots, 2 * frames);
+  EXPECT_EQ(colours, (std::vector<double>{double(formulation_style(families::cable_engineering).colour), 0.0}));
+}
+
+// A scene has the colour of its formulation in all films; other scenes have colours that are unused in their film.
+TEST_F(FilmFiles, HaveTheColoursOfTheirFormulations) {
+  auto const colours = [](std::vector<std::string_view> const& formulations) {
+    std::deque<FilmScene> scenes;
+    for (std::string_view const formulation : formulations)
+      scenes.emplace_back("scene", 30.0, formulation_colour(formulation));
+    return detail::scene_colours(scenes);
+  };
+  using families::cable_green, families::lrvf;
+  int const orange = 3, blue = 0;
+  EXPECT_EQ(colours({"Constraint", cable_green}), (std::vector{blue, orange}));
+  EXPECT_EQ(colours({cable_green, lrvf}), (std::vector{orange, blue}));
+  EXPECT_EQ(colours({"", cable_green, lrvf, lrvf, "my body"}), (std::vector{1, orange, blue, 2, 4}));
+  EXPECT_EQ(colours(std::vector<std::string_view>(10)), (std::vector{0, 1, 2, 3, 4, 5, 6, 7, 0, 1}));
 }
 
 // Ten pictures per second while other tests use the processors; alone it draws 45.
