@@ -309,7 +309,7 @@ void single(Options const& o) {
 }
 
 // Links of --compare matrix.
-std::vector<std::string> const matrix_links{"rigid", "ancf", "ffr", "fe", "lrvf", "beam", "continuum"};
+std::vector<std::string> const matrix_links{"rigid", "ancf", "ffr", "fe", "lrvf", "se3", "beam", "continuum"};
 
 // Results of the run of one combination; strain, force and constraint violation from the plateau on.
 struct Cell {

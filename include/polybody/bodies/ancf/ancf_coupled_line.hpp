@@ -37,10 +37,11 @@ struct CoupledLine : ElasticLine {
     static constexpr int vector(int s, int j) {
       return s == 0 ? Stretch::vector(0, j) : j < 2 ? Bend::vector(s - 1, j) : -1;
     }
-    static Mat<double, 5, 3> map(double xi, double l) {
-      Mat<double, 3, 3> const stretch = Stretch::map(xi, l);
-      Mat<double, 4, 2> const bend = Bend::map(xi, l);
-      Mat<double, 5, 3> n = Mat<double, 5, 3>::Zero();
+    template <class T = double>  // compiled only if used
+    static Mat<T, 5, 3> map(double xi, double l) {
+      Mat<T, 3, 3> const stretch = Stretch::map(xi, l);
+      Mat<T, 4, 2> const bend = Bend::map(xi, l);
+      Mat<T, 5, 3> n = Mat<T, 5, 3>::Zero();
       for (int j = 0; j < 3; ++j) {
         n(0, j) = stretch(0, j);
         for (int s = 1; s < 5 && j < 2; ++s) n(s, j) = bend(s - 1, j);
