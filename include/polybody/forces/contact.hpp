@@ -204,8 +204,9 @@ struct Contact {
   /// secant slope is never less than the derivative of the friction force. Newton's method therefore approaches v = 0
   /// from one side and does not overshoot. The rotation of n, the change of F_t with N, and changes of the weights of
   /// faces are neglected.
+  /// If `between` is not null, Jaᵀ(N′ n nᵀ + F′ (1 − n nᵀ))Jb is added to it.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
-                     Mat<double, 6, 6>& of_b) const {
+                     Mat<double, 6, 6>& of_b, Mat<double, 6, 6>* between = nullptr) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
       if (n <= 0.0) return;
       double const across = normal.slope(p.depth, -v.dot(p.normal), ck, cd) * p.handover.share;
@@ -214,8 +215,10 @@ struct Contact {
         double const vn = v.dot(p.normal), speed2 = v.dot(v) - vn * vn;
         along = friction.slope(speed2, n, cd);
       }
-      add(p, across, along, f[0].r, of_a);
-      add(p, across, along, f[1].r, of_b);
+      Vec3 const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
+      add(p, across, along, arm_a, arm_a, of_a);
+      add(p, across, along, arm_b, arm_b, of_b);
+      if (between) add(p, across, along, arm_a, arm_b, *between);
     });
   }
 
@@ -224,25 +227,26 @@ struct Contact {
   }
 
  private:
-  static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& origin,
+  /// Adds Jaᵀ(across n nᵀ + along (1 − n nᵀ))Jb with J = [1, −ρ×] and the arms ρ = a and ρ = b (3) [m].
+  static void add(ContactPoint<double> const& p, double across, double along, Vec3 const& a, Vec3 const& b,
                   Mat<double, 6, 6>& sum) {
-    Vec3 const rho = p.place - origin, m = rho.cross(p.normal);
-    double const rho2 = rho.dot(rho);
+    Vec3 const ma = a.cross(p.normal), mb = b.cross(p.normal);
+    double const ab = a.dot(b);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         double const d = across - along;
         sum(i, j) += d * p.normal[i] * p.normal[j] + (i == j ? along : 0.0);
-        sum(3 + i, j) += d * m[i] * p.normal[j];
-        sum(i, 3 + j) += d * p.normal[i] * m[j];
-        sum(3 + i, 3 + j) += d * m[i] * m[j] + along * ((i == j ? rho2 : 0.0) - rho[i] * rho[j]);
+        sum(3 + i, j) += d * ma[i] * p.normal[j];
+        sum(i, 3 + j) += d * p.normal[i] * mb[j];
+        sum(3 + i, 3 + j) += d * ma[i] * mb[j] + along * ((i == j ? ab : 0.0) - b[i] * a[j]);
       }
-    // [1, −ρ×]ᵀ[1, −ρ×] has −ρ× above and ρ× below the diagonal
+    // [1, −a×]ᵀ[1, −b×] has −b× above and a× below the diagonal
     for (int i = 0; i < 3; ++i) {
       int const j = (i + 1) % 3, k = (i + 2) % 3;
-      sum(i, 3 + j) += along * rho[k];
-      sum(i, 3 + k) -= along * rho[j];
-      sum(3 + j, i) += along * rho[k];
-      sum(3 + k, i) -= along * rho[j];
+      sum(i, 3 + j) += along * b[k];
+      sum(i, 3 + k) -= along * b[j];
+      sum(3 + j, i) += along * a[k];
+      sum(3 + k, i) -= along * a[j];
     }
   }
 };

@@ -122,9 +122,6 @@ struct AlphaMethod {
   template <class, class>
   friend class IslandSteps;
 
-  /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
-  static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
-
   /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of x if `careful`.
   void guess(State& x, double h, bool careful, AlphaVectors& w) const {
     if (careful) {
@@ -302,13 +299,14 @@ struct AlphaMethod {
   /// Performs one step from x. x changes only if Newton's method converges. A step that does not converge is repeated
   /// without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of the
   /// iterate, because G rotates far within a step near singular configurations. In models with force groups, a second
-  /// repetition uses the approximate stiffness of the groups, because friction jumps. If the rank of G decreases within
-  /// a stabilised step, a last repetition omits μ.
+  /// repetition uses the approximate stiffness of the groups, because friction jumps. If the last tangent couples the
+  /// bodies of contacts, the first repetition uses this stiffness and there is no second one. If the rank of G
+  /// decreases within a stabilised step, a last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     bool const careful = effort > 0;
     guess(x, h, careful, w);
-    bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
+    bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= w.tangent.repetitions(system);
     if (both_multiplier_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.reused_factorisation.usable = false;
 
@@ -329,11 +327,11 @@ struct AlphaMethod {
                             options.always_refactor ? 0.0 : 0.4,
                             both_multiplier_sets,
                             both_multiplier_sets && careful,
-                            effort != 1};
+                            effort != 1 || w.tangent.couples_contacts()};
     if (w.tangent.carries_multipliers()) w.reused_factorisation.theta = std::max(w.reused_factorisation.theta, 0.3);
     NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
-        (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
+        (effort < w.tangent.repetitions(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       if (effort == 0 && w.islands.begin(*this, system, w))
         return detail::retried(w.check.failed, report, [&] { return advance_apart(system, x, h, w); });
       w.tangent.include(system, w.lambda);

@@ -3,6 +3,7 @@
 /// Equations of an implicit step: evaluation, residual, corrections of Newton's method, and tangent.
 
 #include <polybody/solvers/tangent_solver.hpp>
+#include <polybody/system/contact_coupling.hpp>
 
 namespace polybody {
 
@@ -28,6 +29,11 @@ class StepTangent {
       full_q_.setZero(system.layout().coordinates);
       full_v_.setZero(system.layout().velocities);
     }
+    // D is symmetric and positive definite without multipliers and first-order states
+    couples_ = !system.data().found_pairs.empty() && !coordinates_ && system.rows() == 0 && system.layout().states == 0;
+    if (couples_) coupling_.reserve(2 * system.velocities());
+    if (couples_)
+      for (VecX* const x : {&cg_r_, &cg_z_, &cg_p_, &cg_dp_, &cg_ap_}) x->setZero(system.velocities());
     left_out_.clear();
     forget();
   }
@@ -68,6 +74,7 @@ class StepTangent {
   /// of the current iterate. With −Tᵀr as right-hand side, a reused factorisation would transfer forces from body to
   /// body with outdated moment arms, and this error would grow from joint to joint.
   void correct(VecX const& rhs, VecX& y) {
+    if (!coupling_.empty()) return solve_coupled(rhs, y);
     if (!carries_multipliers_) return solver().solve(rhs, y);
     coordinates_->rows_to_equations(rhs.data() + coordinates_.reduced->velocities, balance_);
     solver().linear_solver().solve(balance_, solution_);
@@ -77,11 +84,17 @@ class StepTangent {
   /// estimates. The size of the correction does not include this error, so that the contraction rate of another step
   /// does not predict the next correction.
   bool carries_multipliers() const { return carries_multipliers_; }
+  /// True if the last factorised tangent has blocks that couple the bodies of contacts.
+  bool couples_contacts() const { return !coupling_.empty(); }
+  /// Number of repetitions of a step that does not converge, except the last one without μ (`AlphaMethod`).
+  int repetitions(System const& s) const { return s.layout().has_groups && !couples_contacts() ? 2 : 1; }
   /// Returns the tree to the state `at` after a factorisation in another state. Requires `carries_multipliers()`.
   void return_to(At<double> const& at) { coordinates_->expand(at.q, at.v, full_q_, full_v_); }
   /// Factorises the tangent at x, the state of the last evaluation. Returns −1 on success, otherwise the index of the
   /// equation without a pivot.
-  Index factor(System& system, StepPosition const& x, TangentCoefficients const& k) {
+  Index factor(System& system, StepPosition const& x, TangentCoefficients k) {
+    coupling_.clear();
+    if (couples_) k.coupling = &coupling_;
     return solver().factor_tangent(system, x, k, terms());
   }
 
@@ -114,12 +127,49 @@ class StepTangent {
   }
 
  private:
+  /// Solves (D + C) y = rhs with the factorised blocks D of all bodies and the blocks C of `coupling_`, by the
+  /// conjugate gradient method with the preconditioner D. The product D p follows the recursion of p. If D + C is not
+  /// positive definite along p, the solution so far is used, or D⁻¹ rhs.
+  void solve_coupled(VecX const& rhs, VecX& y) {
+    solver().solve(rhs, cg_z_);
+    cg_r_ = cg_dp_ = rhs;
+    cg_p_ = cg_z_;
+    double rz = cg_r_.dot(cg_z_);
+    double const enough = coupled_residual * coupled_residual * rz;
+    y.setZero(rhs.size());
+    for (int k = 0; k < most_coupled_iterations && rz > enough; ++k) {
+      cg_ap_ = cg_dp_;
+      coupling_.add_product(cg_p_, cg_ap_);
+      double const pap = cg_p_.dot(cg_ap_);
+      if (!(pap > 0.0)) {
+        if (k == 0) y = cg_z_;
+        return;
+      }
+      double const step = rz / pap;
+      for (Index i = 0; i < y.size(); ++i) {
+        y[i] += step * cg_p_[i];
+        cg_r_[i] -= step * cg_ap_[i];
+      }
+      solver().solve(cg_r_, cg_z_);
+      double const before = std::exchange(rz, cg_r_.dot(cg_z_)), ratio = rz / before;
+      for (Index i = 0; i < y.size(); ++i) {
+        cg_p_[i] = cg_z_[i] + ratio * cg_p_[i];
+        cg_dp_[i] = cg_r_[i] + ratio * cg_dp_[i];
+      }
+    }
+  }
+
+  static constexpr double coupled_residual = 1e-3;  // relative residual of the conjugate gradient method
+  static constexpr int most_coupled_iterations = 200;
   static constexpr long shortest_stay = 8, longest_stay = 1L << 20;
 
   TangentSolver<Solver> first_, second_;
   Coordinates coordinates_;
   bool carries_multipliers_ = false;
   VecX balance_, solution_, full_q_, full_v_;
+  bool couples_ = false;  ///< true if the blocks of a contact set between bodies are evaluated
+  ContactCoupling coupling_;
+  VecX cg_r_, cg_z_, cg_p_, cg_dp_, cg_ap_;
   Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
   long stay_ = shortest_stay;  ///< length of a period with second-order terms, in steps

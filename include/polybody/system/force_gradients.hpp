@@ -4,6 +4,7 @@
 /// Theory: Eqs. 3.3, 9.8, 9.44.
 
 #include <polybody/forces/reaction_force.hpp>
+#include <polybody/system/contact_coupling.hpp>
 #include <polybody/system/joint_kernels.hpp>
 
 namespace polybody::detail {
@@ -127,12 +128,24 @@ void add_multiplier_columns(ForceEntry<F> const& e, GradientAt const& x, Data<do
 
 /// Adds to `to[k]` the stiffness of marker k of a pair with respect to the motion of this marker, without x.scale. If
 /// `c.surrogate_friction` is true, the law's approximate `own_stiffness` replaces the exact stiffness. With `c.full`,
-/// −scale · w of the wrenches w is also added to data.loads.
+/// −scale · w of the wrenches w is also added to data.loads. With `c.coupling`, the block that couples both markers is
+/// added to it, if the law provides this block.
 template <class L>
 void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
                        std::array<Mat<double, 6, 6>*, 2> const& to) {
   auto const frames = frames_at(at, data);
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
+  if constexpr (requires(Mat<double, 6, 6>& k) { law.own_stiffness(frames, 1.0, 1.0, k, k, &k); })
+    if (x.c.surrogate_friction && x.c.coupling) {
+      Mat<double, 6, 6> between;
+      std::fill_n(between.data(), 36, 0.0);
+      law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1], &between);
+      if (std::all_of(between.data(), between.data() + 36, [](double entry) { return entry == 0.0; })) return;
+      for (int i = 0; i < 36; ++i) between.data()[i] *= -x.scale;
+      BlockSink sink(*x.c.coupling);
+      return add_pulled_pair(data.markers[std::size_t(at[0])], data.markers[std::size_t(at[1])], between.data(), 6,
+                             data.scratch, sink);
+    }
   if constexpr (HasOwnStiffness<L>)
     if (x.c.surrogate_friction) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
   Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);

@@ -321,8 +321,11 @@ void ForceKernels<F, T>::group_tangent(Entry const& e, detail::GradientAt const&
   if constexpr (ForceGroup<F>) {
     auto& own = data.own_stiffness;
     for (std::size_t k = 0; k < e.markers.size(); ++k) std::fill_n(own[k].data(), 36, 0.0);
+    TangentCoefficients c = x.c;
+    if constexpr (!SearchingForceGroup<F>) c.coupling = nullptr;
+    detail::GradientAt const of_pair{x.t, x.scale, c};
     detail::for_each_action(e, data, [&](auto const& law, auto const& markers, auto const& at) {
-      detail::add_own_stiffness(law, at, x, data, {&own[std::size_t(markers[0])], &own[std::size_t(markers[1])]});
+      detail::add_own_stiffness(law, at, of_pair, data, {&own[std::size_t(markers[0])], &own[std::size_t(markers[1])]});
     });
     for (std::size_t k = 0; k < e.markers.size(); ++k) {
       MarkerKinematics<double> const& p = data.markers[std::size_t(e.markers[k])];

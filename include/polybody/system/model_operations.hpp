@@ -14,6 +14,7 @@
 namespace polybody {
 
 class ActiveContactPairs;
+class ContactCoupling;
 
 /// Coefficients of the tangent cm M + cd D + ck K with D = −∂f/∂v and K = −∂f/∂q.
 struct TangentCoefficients {
@@ -27,6 +28,9 @@ struct TangentCoefficients {
   bool exact = false;
   /// Pairs of force groups with blocks between their two markers (system/active_contact_pairs.hpp); null: all pairs.
   ActiveContactPairs* pairs = nullptr;
+  /// Receives the blocks between the two bodies of each contact of a contact set, if `surrogate_friction` is true
+  /// (system/contact_coupling.hpp); null: these blocks are not evaluated.
+  ContactCoupling* coupling = nullptr;
   double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, with the first-order states z
 };
 

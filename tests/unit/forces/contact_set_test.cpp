@@ -9,6 +9,7 @@
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/system/contact_coupling.hpp>
 #include <polybody/testing/differences.hpp>
 
 #include "support/refusal.hpp"
@@ -237,6 +238,37 @@ TEST(ContactSet, HasTheSameForcesAfterAnySearch) {
       ASSERT_EQ(with_kept[i].f, anew[i].f);
       ASSERT_EQ(with_kept[i].m, anew[i].m);
     }
+  }
+}
+
+// --- tangent --------------------------------------------------------------------------------------------------
+
+/// Sum of all blocks as a dense matrix.
+struct DenseSum {
+  MatX sum;
+  void add(Index row, Index col, BlockView const& b) {
+    for (Index i = 0; i < b.rows; ++i)
+      for (Index j = 0; j < b.cols; ++j) sum(row + i, col + j) += b(i, j);
+  }
+};
+
+// At rest the blocks of the bodies and the coupling of the contacts are the exact derivative with respect to the
+// velocities: the secant of the friction force then equals its derivative.
+TEST(ContactSet, BodiesAndCouplingAreTheExactDampingAtRest) {
+  Swarm<Balls> const swarm(12, damped, rubber);
+  State const x = swarm.model.reference_state();
+  System system(swarm.model);
+  system.evaluate(x.q, x.v, x.t);
+  Index const n = system.velocities();
+  DenseSum exact{MatX::Zero(n, n)}, bodies = exact;
+  ContactCoupling coupling;
+  system.tangent({.mass = 1.0, .damping = 0.1, .exact = true}, SecondOrder::omitted, x.lambda, exact);
+  system.tangent({.mass = 1.0, .damping = 0.1, .coupling = &coupling}, SecondOrder::omitted, x.lambda, bodies);
+  EXPECT_GT((bodies.sum - exact.sum).norm(), 0.1 * exact.sum.norm());
+  for (Index j = 0; j < n; ++j) {
+    VecX column = bodies.sum.col(j);
+    coupling.add_product(VecX(VecX::Unit(n, j)), column);
+    EXPECT_LT((column - exact.sum.col(j)).norm(), 1e-12 * exact.sum.norm()) << j;
   }
 }
 
