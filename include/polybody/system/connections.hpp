@@ -127,7 +127,7 @@ struct PooledMarker<Ground> {
 /// Returns the entry of the model to which `handle` refers. \throws InvalidInput for a handle of another model or a
 /// default-constructed handle.
 template <class Entries, class Handle>
-auto const& own_entry(Entries const& entries, Handle const& handle) {
+auto& own_entry(Entries& entries, Handle const& handle) {
   require_filled(handle.model);
   if (!holds(entries, handle.index, handle.model)) refuse_marker_of_another_model(handle.name);
   return entries[std::size_t(handle.index)];

@@ -171,16 +171,14 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   Index add_member(ElementHandle<F> const& set, S const& shape, Marker<A> const& at, std::string name = "",
                    int group = 0) {
     detail::require_kinematics<(Marker<A>::observes >= S::needs)>();
-    (void)entry(set);
-    return detail::add_member(parts_, pool_of<F>()[std::size_t(set.index)], shape, pooled(at), std::move(name), group);
+    return detail::add_member(parts_, detail::own_entry(pool_of<F>(), set), shape, pooled(at), std::move(name), group);
   }
   /// Excludes the contact of two members of a contact set, by their numbers m and n. \throws InvalidInput for a handle
   /// of another model or an invalid number.
   template <OneOf<Fs...> F>
     requires SearchingForceGroup<F>
   void exclude(ElementHandle<F> const& set, Index m, Index n) {
-    (void)entry(set);
-    detail::exclude_members(parts_, pool_of<F>()[std::size_t(set.index)], m, n);
+    detail::exclude_members(parts_, detail::own_entry(pool_of<F>(), set), m, n);
   }
   /// Refuses a force whose type is not in the model's list, for any `others`.
   template <class F, class... Rest>
@@ -205,8 +203,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires(ForceGroup<F> && !SearchingForceGroup<F>)
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
-    (void)entry(group);
-    detail::add_contact_partner(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+    detail::add_contact_partner(parts_, detail::own_entry(pool_of<F>(), group), law, pooled(one), std::move(name));
   }
 
   /// Reference state: undeformed bodies as placed, at rest, t = 0, with the initial states of the forces.

@@ -63,8 +63,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires(ForceGroup<F> && !SearchingForceGroup<F>)
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
-    (void)detail::own_entry(forces_of<F>(), group);
-    detail::add_contact_partner(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+    detail::add_contact_partner(parts_, detail::own_entry(forces_of<F>(), group), law, pooled(one), std::move(name));
   }
 
   /// Applies a contact set, like `Model::apply`.
@@ -80,16 +79,14 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   Index add_member(ElementHandle<F> const& set, S const& shape, Marker<A> const& at, std::string name = "",
                    int group = 0) {
     detail::require_kinematics<(Marker<A>::observes >= S::needs)>();
-    (void)detail::own_entry(forces_of<F>(), set);
-    return detail::add_member(parts_, forces_of<F>()[std::size_t(set.index)], shape, pooled(at), std::move(name),
+    return detail::add_member(parts_, detail::own_entry(forces_of<F>(), set), shape, pooled(at), std::move(name),
                               group);
   }
   /// Excludes the contact of the members m and n of a contact set, like `Model::exclude`.
   template <OneOf<Fs...> F>
     requires SearchingForceGroup<F>
   void exclude(ElementHandle<F> const& set, Index m, Index n) {
-    (void)detail::own_entry(forces_of<F>(), set);
-    detail::exclude_members(parts_, forces_of<F>()[std::size_t(set.index)], m, n);
+    detail::exclude_members(parts_, detail::own_entry(forces_of<F>(), set), m, n);
   }
 
  private:

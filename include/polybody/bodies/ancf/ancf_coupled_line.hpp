@@ -5,7 +5,6 @@
 
 #include <polybody/bodies/ancf/ancf_elastic_line.hpp>
 #include <polybody/bodies/shared/bar_sections.hpp>
-#include <polybody/bodies/shared/matrix_group.hpp>
 
 namespace polybody {
 
@@ -88,7 +87,7 @@ struct CoupledLine : ElasticLine {
       return out;
     }
   };
-  using Groups = std::tuple<MatrixGroup<Line>, StrainGroup<Section>>;  ///< the strain groups of an element
+  using Groups = std::tuple<StrainGroup<Line, true>, StrainGroup<Section>>;  ///< the strain groups of an element
 
   /// Constants of the bar at its first end, without couplings and about the centre of mass.
   template <class = void>  // compiled only if used

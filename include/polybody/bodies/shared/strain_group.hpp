@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Elastic force and tangent of an element from a group of strains at its quadrature points.
-/// Theory: Eqs. 2.20 to 2.23.
+/// Theory: Eqs. 2.20 to 2.23, 2.126.
 
 #include <numeric>
 
@@ -18,15 +18,16 @@ namespace polybody {
 ///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
 ///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
 /// If strains are components of a vector that rotates with the body, only a part of ε̇ is deformation. The law then
-/// defines this part, P_ε ε̇ (`objective_rate`), which replaces ε̇. P is sparse (`StrainMap`). The code uses plain
-/// loops, which work for doubles, dual numbers and SIMD vectors of elements, and compile fast.
-template <StrainFunctions Law>
-class StrainGroup : public StrainPoints<Law> {
-  using Points = StrainPoints<Law>;
+/// defines this part, P_ε ε̇ (`objective_rate`), which replaces ε̇. If `coupled`, the stress is n = C (ε − ε⁰) + D ε̇ +
+/// n⁰ with symmetric matrices C and D of each point, and C τ in the tangents is D. P is sparse (`StrainMap`). The code
+/// uses plain loops, which work for doubles, dual numbers and SIMD vectors of elements, and compile fast.
+template <StrainFunctions Law, bool coupled = false>
+class StrainGroup : public StrainPoints<Law, coupled> {
+  using Points = StrainPoints<Law, coupled>;
 
  protected:
   using Points::quadratic, Points::stiffness_, Points::time_, Points::initial_, Points::damped_, Points::maps_,
-      Points::products_, Points::weights_, Points::free_;
+      Points::products_, Points::weights_, Points::free_, Points::elastic, Points::viscous;
 
  public:
   using Points::np, Points::m, Points::Points;
@@ -45,10 +46,8 @@ class StrainGroup : public StrainPoints<Law> {
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      if (damped_) add_damping(rates(b, P::parameters(maps_[std::size_t(g)], ed)), stress);
-#pragma GCC unroll 8
-      for (int i = 0; i < m; ++i)
-        stress[i] = ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * weights_[std::size_t(g)];
+      to_stress(
+          g, weights_[std::size_t(g)], [&] { return rates(b, P::parameters(maps_[std::size_t(g)], ed)); }, stress);
       Vec<T, np> pull;  // w Bᵀ n
 #pragma GCC unroll 16
       for (int k = 0; k < np; ++k) {
@@ -100,9 +99,8 @@ class StrainGroup : public StrainPoints<Law> {
           for (int q = 0; q < np; ++q)
             change(i, q) =
                 (b(i, q) * (ck + time_[i] * cd) + change(i, q) * (time_[i] * ck)) * (weights_[g] * stiffness_[i]);
-        if (damped_) add_damping(rates(b, pd), stress);
+        to_stress(g, ck * weights_[g], [&] { return rates(b, pd); }, stress);
         for (int i = 0; i < m; ++i) {
-          stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
           P::pull_row(maps_[g], b, i, left[c * m + i]);
           P::pull_row(maps_[g], change, i, right[c * m + i]);
         }
@@ -158,7 +156,7 @@ class StrainGroup : public StrainPoints<Law> {
       for (int r = 0; r < np; ++r) {
         Vec<T, m> scaled;
 #pragma GCC unroll 8
-        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[std::size_t(g)] * stiffness_[i] * ck);
+        for (int i = 0; i < m; ++i) scaled[i] = elastic(g, i, at.b.data() + m * r, ck * weights_[std::size_t(g)]);
 #pragma GCC unroll 8
         for (int c = 0; c <= r; ++c) {
           T sum = scaled[0] * at.b(0, c);
@@ -172,13 +170,9 @@ class StrainGroup : public StrainPoints<Law> {
       if (damped_) {
         at.pd = P::parameters(maps_[std::size_t(g)], ed);
         at.rate = rates(at.b, at.pd);
-        add_damping_gradient(weights_[std::size_t(g)], ck, cd, at, h);
-        add_damping(at.rate, stress);
+        add_damping_gradient(g, ck, cd, at, h);
       }
-#pragma GCC unroll 8
-      for (int i = 0; i < m; ++i)
-        stress[i] =
-            ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[std::size_t(g)]);
+      to_stress(g, ck * weights_[std::size_t(g)], [&] { return at.rate; }, stress);
       Law::template add_hessian<T>(at.p, stress, h);
     }
   }
@@ -223,18 +217,34 @@ class StrainGroup : public StrainPoints<Law> {
     return rate;
   }
 
-  /// Adds the damping term to the strains: strain += τ P_ε ε̇.
-  template <class T>
-  void add_damping(Vec<T, m> rate, Vec<T, m>& strain) const {
-    if constexpr (HasObjectiveRate<Law>) Law::template objective_rate<T>(strain, rate);
+  /// Replaces the strains ε at point g by the stress w n. \param rate_of returns ε̇ of a damped group
+  template <class T, class RateOf>
+  void to_stress(int g, double w, RateOf&& rate_of, Vec<T, m>& strain) const {
+    if constexpr (coupled) {
+      Vec<T, m> stretch, rate;
+      for (int i = 0; i < m; ++i) stretch[i] = strain[i] - free_[std::size_t(g)][i];
+      if (damped_) rate = rate_of();
+      for (int i = 0; i < m; ++i) {
+        strain[i] = elastic(g, i, stretch.data(), w) + w * initial_[i];
+        if (damped_) strain[i] += viscous(g, i, rate.data(), w);
+      }
+    } else {
+      if (damped_) {
+        Vec<T, m> rate = rate_of();
+        if constexpr (HasObjectiveRate<Law>) Law::template objective_rate<T>(strain, rate);
 #pragma GCC unroll 8
-    for (int i = 0; i < m; ++i) strain[i] += rate[i] * time_[i];
+        for (int i = 0; i < m; ++i) strain[i] += rate[i] * time_[i];
+      }
+#pragma GCC unroll 8
+      for (int i = 0; i < m; ++i)
+        strain[i] = ((strain[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * w;
+    }
   }
 
-  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ Σ_j [D_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with
-  /// D = P_ε and Q of `HasObjectiveRate`. Most laws have D = 1 and Q = 0.
+  /// Adds the derivative of the damping at point g with the weight w, h += Σ_i w C_i τ_i B_iᵀ Σ_j [D_ij (ck (H_j ṗ)ᵀ +
+  /// cd B_j) + ck Q_ij B_j], with D = P_ε and Q of `HasObjectiveRate`. Most laws have D = 1 and Q = 0.
   template <class T>
-  void add_damping_gradient(double w, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
+  void add_damping_gradient(int g, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // rows ck H_j ṗ + cd B_j
     for (int j = 0; j < m; ++j) {
       Mat<T, np, np> second;
@@ -262,7 +272,7 @@ class StrainGroup : public StrainPoints<Law> {
     }
     for (int i = 0; i < m; ++i)
       for (int c = 0; c < np; ++c) {
-        T const factor = change(i, c) * (w * stiffness_[i] * time_[i]);
+        T const factor = viscous(g, i, change.data() + m * c, weights_[std::size_t(g)]);
         for (int r = 0; r < np; ++r) h(r, c) += at.b(i, r) * factor;
       }
   }

@@ -58,9 +58,13 @@ concept HasSquare = requires(Vec<double, L::parameters> const p) {
 };
 
 /// Quadrature points of a group of strains: weight, map P and stress-free strains of each point. The stiffness C, the
-/// damping time τ and the initial stress n⁰ are equal at all points.
-template <StrainFunctions Law>
+/// damping time τ and the initial stress n⁰ are equal at all points. If `coupled`, each point has a symmetric stiffness
+/// matrix C and a symmetric damping matrix D instead of C and C τ.
+template <StrainFunctions Law, bool coupled = false>
 class StrainPoints {
+  static_assert(!coupled || !(QuadraticStrains<Law> || HasObjectiveRate<Law> || HasSquare<Law>),
+                "Stiffness matrices require strains without a special form.");
+
  public:
   static constexpr int np = Law::parameters, m = Law::strains;  ///< number of parameters and of strains
 
@@ -69,8 +73,15 @@ class StrainPoints {
   template <class T, int n>
   using Coordinates = typename P::template Coordinates<T, n>;  ///< coordinates ê of an element (`StrainMap`)
   using Strains = Vec<double, m>;                              ///< one number for each strain
+  using Matrix = Mat<double, m, m>;                            ///< C or D
 
   StrainPoints() = default;
+  /// Quadrature points with the initial stress n⁰; `set_point` and `set_matrices` define each point.
+  explicit StrainPoints(Strains const& initial)
+    requires coupled
+      : StrainPoints(Strains::Ones(), Strains::Zero()) {
+    initial_ = initial;
+  }
   /// Quadrature points of elements of length l [m]: those of `Law::rule` if it exists, otherwise Gauss points.
   /// `initial` is the stress n⁰ at ε = ε⁰, such as a pretension.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
@@ -93,6 +104,14 @@ class StrainPoints {
       auto const [s, j, t, l] = P::table.pairs[k];
       products_[k][std::size_t(g)] = map(s, j) * map(t, l);
     }
+  }
+
+  /// Sets C and D [N s, N m s, N m² s] of point g.
+  void set_matrices(int g, Matrix const& stiffness, Matrix const& damping)
+    requires coupled
+  {
+    matrices_[std::size_t(g)] = {stiffness, damping};
+    damped_ = damped_ || !damping.isZero(0.0);
   }
 
   /// Sets the stress-free strains to those of the coordinates x, ε⁰ = ε(x) at each point.
@@ -130,20 +149,20 @@ class StrainPoints {
       Vec<double, m> strain;
       Mat<double, m, np> b;
       Law::template evaluate<double>(P::parameters(maps_[std::size_t(g)], e), strain, b);
+      strain -= free_[std::size_t(g)];
 #pragma GCC unroll 8
-      for (int i = 0; i < m; ++i) {
-        double const stretch = strain[i] - free_[std::size_t(g)][i];
-        u += weights_[std::size_t(g)] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
-      }
+      for (int i = 0; i < m; ++i)
+        u += weights_[std::size_t(g)] * (elastic(g, i, strain.data(), 0.5) + initial_[i]) * strain[i];
     }
     return u;
   }
 
   /// Adds the discrete-gradient force of the group over a step from x0 to x1, with secants S of the strains [Gonzalez
   /// 1996]:
-  ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
-  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force exerts no moment on the body if strains are
-  /// scalar products of the parameters. A strain vector that rotates with the body enters through its square z
+  ///   f += −∫ Pᵀ Sᵀ n dx,  n = C (ε̄ − ε⁰ + decay Δε) + D Δε/h + n⁰,  S P Δx = Δε,
+  /// so that f·Δx = −ΔU − ∫ Δεᵀ (decay C + D/h) Δε dx, with D_i = C_i τ_i. The force exerts no moment on the body if
+  /// strains are scalar products of the parameters. A strain vector that rotates with the body enters through its
+  /// square z
   /// (`HasSquare`): n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), with κ₀ = 1e-3 1/m, which agrees with the damping of
   /// `objective_rate`. ε⁰ and n⁰ then have no effect, and the term of `decay` exerts a moment.
   template <int n>
@@ -167,11 +186,15 @@ class StrainPoints {
         Vec<S, m> strain;
         Mat<S, m, np> b;
         Law::template evaluate<S>(p, strain, b);
+        Strains stretch, change;
         for (int i = 0; i < m; ++i) {
-          double stretch = means.decay * strain[i].change();
-          if constexpr (!HasSquare<Law>)
-            stretch += strain[i].mean() - free_[std::size_t(g)][i] + time_[i] * means.rate * strain[i].change();
-          sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
+          change[i] = strain[i].change();
+          stretch[i] = means.decay * change[i] + (HasSquare<Law> ? 0.0 : strain[i].mean() - free_[std::size_t(g)][i]);
+        }
+        for (int i = 0; i < m; ++i) {
+          double stress = elastic(g, i, stretch.data(), 1.0);
+          if constexpr (!HasSquare<Law>) stress += viscous(g, i, change.data(), means.rate) + initial_[i];
+          sum += strain[i].d * stress;
         }
       }
       Vec<double, np> pull;
@@ -183,7 +206,7 @@ class StrainPoints {
 
   /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The derivatives B̄
   /// and H̄ of the strains at the middle of the step replace the secants:
-  ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
+  ///   Pᵀ [B̄ᵀ ((½ + decay) C + D/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means, double ck,
                         Mat<double, n, n>& k) const {
@@ -198,13 +221,16 @@ class StrainPoints {
       Law::template evaluate<double>(p1, to, end);
       Law::template evaluate<double>(middle, stress, b);
       Mat<double, np, np> h = Mat<double, np, np>::Zero();
+      double const w = ck * weights_[std::size_t(g)];
+      Strains const change = to - from, stretch = 0.5 * (from + to) - free_[std::size_t(g)] + means.decay * change;
       for (int i = 0; i < m; ++i) {
-        double const w = ck * weights_[std::size_t(g)], share = means.decay + time_[i] * means.rate;
-        stress[i] = 0.5 * w *
-                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[std::size_t(g)][i] + share * (to[i] - from[i])) +
-                     initial_[i]);
-        for (int c = 0; c < np; ++c)
-          for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
+        stress[i] =
+            0.5 * (elastic(g, i, stretch.data(), w) + viscous(g, i, change.data(), w * means.rate) + w * initial_[i]);
+        for (int c = 0; c < np; ++c) {
+          double const factor = elastic(g, i, end.data() + m * c, w * (0.5 + means.decay)) +
+                                viscous(g, i, end.data() + m * c, w * means.rate);
+          for (int r = 0; r < np; ++r) h(r, c) += b(i, r) * factor;
+        }
       }
       if constexpr (quadratic) {
         Mat<double, P::shapes, P::shapes> of_shapes = Mat<double, P::shapes, P::shapes>::Zero();
@@ -227,6 +253,23 @@ class StrainPoints {
   }
 
  protected:
+  /// Component i of w C x at point g, for x (m).
+  template <class T>
+  T elastic(int g, int i, T const* x, double w) const {
+    if constexpr (coupled)
+      return row_times(matrices_[std::size_t(g)][0], i, x, w);
+    else
+      return x[i] * (w * stiffness_[i]);
+  }
+  /// Component i of w D x at point g, for x (m).
+  template <class T>
+  T viscous(int g, int i, T const* x, double w) const {
+    if constexpr (coupled)
+      return row_times(matrices_[std::size_t(g)][1], i, x, w);
+    else
+      return x[i] * (w * stiffness_[i] * time_[i]);
+  }
+
   static constexpr bool quadratic = QuadraticStrains<Law>;  ///< true if the strains are quadratic in the parameters
 
   Strains stiffness_ = Strains::Zero();             ///< stiffness C
@@ -238,6 +281,16 @@ class StrainPoints {
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
   std::array<double, Law::points> weights_;  ///< weight of each point [m]
   std::array<Strains, Law::points> free_;    ///< stress-free strains ε⁰ of each point
+
+ private:
+  template <class T>
+  static T row_times(Matrix const& a, int i, T const* x, double w) {
+    T sum = x[0] * (w * a(i, 0));
+    for (int j = 1; j < m; ++j) sum += x[j] * (w * a(i, j));
+    return sum;
+  }
+
+  std::array<std::array<Matrix, 2>, coupled ? std::size_t(Law::points) : 0> matrices_{};  ///< C and D of each point
 };
 
 }  // namespace polybody
