@@ -3,9 +3,11 @@
 //   cantilever --case all --out out/cantilever
 //   cantilever --case compare --body lrvf,ancf --error 1e-2,1e-3      # at equal error
 //   cantilever --case run --body ffr-modal --integrator hht,radau     # --list: the combinations
+//   cantilever --case space                                           # the two meshes of beams in space
 //   cantilever --case equal-mesh --viewer build/release/polybody_viewer.html --film beam.html
 #include <numbers>
 
+#include "cantilever/space.hpp"
 #include "chapter2_film.hpp"
 #include "chapter2_formulations.hpp"
 #include "chapter2_meshes.hpp"
@@ -203,8 +205,10 @@ int main(int argc, char** argv) {
   o.stiffness = low.name;
   o.meshes = {5, 10, 20, 40, 80, 160};  // with more elements, vibrations due to the sudden moment hide the convergence
   CommandLine line{
-      "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, and a comparison of formulations"};
-  add_formulation_options(line, o, {"moment", "roll-up", "equal-mesh"});
+      "The clamped beam of Chapter 2: Figures 2.9 and 2.10, roll-up to a circle, two meshes in space, and a comparison "
+      "of "
+      "formulations"};
+  add_formulation_options(line, o, {"moment", "roll-up", "space", "equal-mesh"});
   line.positive("--until", &o.end_time, "end of the run [s]; at most 4 s in comparisons");
   line.option("--moment", &o.moment, "moment at the tip [N m]");
   line.positive("--density", &o.density, "density, which the thesis does not give [kg/m^3]");
@@ -224,6 +228,7 @@ int main(int argc, char** argv) {
       if (o.body == "ancf-engineering") tip_moment<planar::AncfCable<EngineeringStrain>>(o);
     }
     if (all || o.which == "roll-up") roll_up_all(o);
+    if (all || o.which == "space") meshes_in_space(o.out, !o.no_plot);
     if (all || o.which == "equal-mesh") equal_meshes(o);
   } catch (Error const& e) {
     std::cerr << "cantilever: " << e.what() << '\n';

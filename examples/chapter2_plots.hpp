@@ -19,9 +19,13 @@ Curve shape_of(M const& model, State const& x, BodyHandle<B> const& handle, doub
   return c;
 }
 
-// Rotation mesh of an Lrvf: the curve that its rotation field implies.
-template <class M>
-Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> const& handle) {
+// Beam with a position mesh and a rotation mesh.
+template <class B>
+concept HasTwoMeshes = requires(B const& beam, std::span<double const> q) { mesh_diagnostics(beam, q); };
+
+// Rotation mesh: the curve that the rotation field of a beam implies.
+template <class M, HasTwoMeshes B>
+Curve implied_shape_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   Curve c;
   for (Vec2 const& r : implied_curve(handle.body(), coordinates_of(model, x, handle), 6)) {
     c.x.push_back(r[0]);
@@ -30,14 +34,14 @@ Curve implied_shape_of(M const& model, State const& x, BodyHandle<planar::Lrvf> 
   return c;
 }
 
-// Adds both meshes of an Lrvf as two curves, or the centre line of another body as one curve, with its nodes and the
+// Adds both meshes of a beam as two curves, or the centre line of another body as one curve, with its nodes and the
 // time at the tip. Only the first snapshot has labels.
 template <class M, class B>
 void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> const& handle, double bar_length) {
   bool const first = figure.curves.empty();
   Curve position = shape_of(model, x, handle, bar_length);
   position.colour = 0;
-  if constexpr (std::is_same_v<B, planar::Lrvf>) {
+  if constexpr (HasTwoMeshes<B>) {
     position.label = first ? "position mesh" : "";
     Curve rotation = implied_shape_of(model, x, handle);
     rotation.colour = 1;
@@ -55,6 +59,26 @@ void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> 
   nodes.colour = 0;
   figure.curves.push_back(nodes);
   figure.texts.push_back({nodes.x.back(), nodes.y.back(), number(x.t, 3) + " s"});
+}
+
+// Adds points of both meshes to the columns of a table: a number of the state, the arc length s, and the points at s on
+// the position mesh and on the rotation mesh, `samples` in each element.
+template <class M, HasTwoMeshes B>
+void add_points(std::vector<std::vector<double>>& columns, double state, M const& model, State const& x,
+                BodyHandle<B> const& handle, int samples = 2) {
+  auto const implied = implied_curve(handle.body(), coordinates_of(model, x, handle), samples);
+  Index const dim = implied[0].size();
+  columns.resize(std::size_t(2 + 2 * dim));
+  double const part = handle.body().length() / double(implied.size() - 1);
+  for (std::size_t i = 0; i < implied.size(); ++i) {
+    Vec3 const r = position(model, x, handle.at(part * double(i)));
+    columns[0].push_back(state);
+    columns[1].push_back(part * double(i));
+    for (Index k = 0; k < dim; ++k) {
+      columns[std::size_t(2 + k)].push_back(r[k]);
+      columns[std::size_t(2 + dim + k)].push_back(implied[i][k]);
+    }
+  }
 }
 
 // Sets the ranges and the size of a figure of shapes, so that flat shapes remain readable on equal axes.

@@ -1,5 +1,6 @@
 // The flexible robot arm of Chapter 2 (Figures 2.4 to 2.8) under several formulations, side by side.
 //   robot_arm --case all --out out/robot_arm
+//   robot_arm --case figures --body se3                               # Figures 2.5 to 2.8 with another body
 //   robot_arm --case compare --body lrvf,ancf --error 1e-2,1e-3       # at equal error
 //   robot_arm --case run --body ffr-modal --integrator hht,radau      # --list: the combinations
 //   robot_arm --case equal-mesh --viewer build/release/polybody_viewer.html --film arm.html
@@ -66,38 +67,47 @@ void figure_2_4(Options const& o) {
   draw(f, o.out / "figure_2_4_angle", !o.no_plot);
 }
 
-// Observer of the two meshes of the Lrvf during a run.
+// Observer of the two meshes of a beam during a run.
+template <class B>
 struct MeshWatch {
   Case const& of;
   double widest = 0.0, longest = 0.0, implied = 0.0;  // [m]
+  double interpolation = 0.0;                         // of all nodes of all snapshots [m]
+  std::vector<std::vector<double>> points = {};
 
   template <class M>
-  void see(RobotArm<planar::Lrvf> const& arm, M const& now, std::vector<double>& row) {
+  void see(RobotArm<B> const& arm, M const& now, std::vector<double>& row) {
     MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
     row.insert(row.end(), {d.largest_gap, d.position_length, d.rotation_length});
     widest = std::max(widest, d.largest_gap);
     longest = std::max(longest, d.position_length);
     implied = d.rotation_length;
   }
-  void snapshot(RobotArm<planar::Lrvf> const& arm, State const& now) const {
-    meshes_row(of.name, now.t, meshes_apart(arm.arm.body(), coordinates_of(arm.model, now, arm.arm)));
+  void snapshot(RobotArm<B> const& arm, State const& now) {
+    Apart const a = meshes_apart(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
+    meshes_row(of.name, now.t, a);
+    interpolation = std::max(interpolation, a.interpolation_of_all);
+    add_points(points, now.t, arm.model, now, arm.arm);
   }
-  void tell() const {
+  void tell(fs::path const& table) const {
     say(of.name, "largest gap", widest, "m");
     say(of.name, "gap in lengths", 100.0 * widest / length, "%");
+    say(of.name, "largest interpolation part", interpolation, "m");
     say(of.name, "longest position mesh", longest, "m");
     say(of.name, "rotation mesh", implied, "m");
     if (of.axial_force != 0.0) say(of.name, "static position mesh", static_length(), "m");
+    write_table(table,
+                {"t [s]", "s [m]", "x, positions [m]", "y, positions [m]", "x, rotations [m]", "y, rotations [m]"},
+                points);
   }
   // Length of the position mesh in static equilibrium under the axial force [m].
   double static_length() const {
-    RobotArm<planar::Lrvf> arm(bar(of.stiffness, 1.0), 10, of.ramp, of.axial_force);
+    RobotArm<B> arm(bar(of.stiffness, 1.0), 10, of.ramp, of.axial_force);
     State x = arm.model.reference_state();
     equilibrium(arm.model, x, {});
     return mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, x, arm.arm)).position_length;
   }
 };
-
 template <class B>
 void run_case(Options const& o, Case const& c) {
   RobotArm<B> arm(bar(c.stiffness, o.density), o.elements, c.ramp, c.axial_force);
@@ -109,11 +119,11 @@ void run_case(Options const& o, Case const& c) {
       .y_label = "y [m]",
       .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
-  bool constexpr two_meshes = std::is_same_v<B, planar::Lrvf>;
+  bool constexpr two_meshes = HasTwoMeshes<B>;
   if (two_meshes)
     heads.insert(heads.end(), {"node gap [m]", "length of the position mesh [m]", "length of the rotation mesh [m]"});
   std::vector<std::vector<double>> columns(heads.size());
-  MeshWatch watch{.of = c};
+  MeshWatch<B> watch{.of = c};
   double next_checkpoint = 0.0;
   if (two_meshes) meshes_head();
   Progress progress(0.0, end_time, c.name);
@@ -132,11 +142,11 @@ void run_case(Options const& o, Case const& c) {
     progress.update(now.t);
   }
   progress.finish();
-  std::string const stem = two_meshes ? c.file : c.file + "_" + o.body;
+  std::string const stem = o.body == "lrvf" ? c.file : c.file + "_" + o.body;
   write_table(o.out / (stem + ".csv"), heads, columns);
   fit(snapshots);
   draw(snapshots, o.out / stem, !o.no_plot);
-  if constexpr (two_meshes) watch.tell();
+  if constexpr (two_meshes) watch.tell(o.out / (stem + "_meshes.csv"));
 }
 
 // Case for `compare`: the arm in one formulation.
@@ -227,7 +237,7 @@ void energies(Options const& o) {
 template <class B>
 void run_cases(Options const& o) {
   for (Case const& c : cases(o))
-    if (o.which == "all" || o.which == c.name) run_case<B>(o, c);
+    if (o.which == "all" || o.which == "figures" || o.which == c.name) run_case<B>(o, c);
 }
 
 // Largest distance of a node between the two meshes during the ramp, for densities and ramps that the thesis does not
@@ -313,9 +323,9 @@ int main(int argc, char** argv) {
   o.stiffness = medium.name;
   CommandLine line{
       "The flexible robot arm of Chapter 2: Figures 2.4 to 2.8, and the same arm under several formulations"};
-  add_formulation_options(
-      line, o,
-      {"angle", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh", "energy", "bands", "split"});
+  add_formulation_options(line, o,
+                          {"angle", "figures", "high", "medium", "fast-medium", "fast-low", "axial", "equal-mesh",
+                           "energy", "bands", "split"});
   line.not_negative(
       "--until", &o.end_time,
       "end of the run [s]; 0: the end of the ramp, or 1.5 times the ramp with run, compare and equal-mesh");
@@ -332,9 +342,10 @@ int main(int argc, char** argv) {
   if (!o.viewer.empty() && o.film.empty()) o.film = o.out / "film.html";
   try {
     if (o.is_of_formulations()) return run_formulations(o, problem_of(o)) ? 0 : 1;
-    o.body = o.body_of_figures({"lrvf", "ancf", "ancf-engineering", "rigid"});
+    o.body = o.body_of_figures({"lrvf", "se3", "ancf", "ancf-engineering", "rigid"});
     if (o.which == "all" || o.which == "angle") figure_2_4(o);
     if (o.body == "lrvf") run_cases<planar::Lrvf>(o);
+    if (o.body == "se3") run_cases<planar::Se3Beam>(o);
     if (o.body == "ancf") run_cases<planar::AncfCable<GreenStrain>>(o);
     if (o.body == "ancf-engineering") run_cases<planar::AncfCable<EngineeringStrain>>(o);
     if (o.body == "rigid") run_cases<planar::Rigid>(o);

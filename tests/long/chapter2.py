@@ -1,5 +1,6 @@
 """Cases of docs/chapter2.md: {name: (page, command, read)}, read(text) -> ({row: {column: number}}, table or "")."""
 
+import math
 import re
 
 from reading import markdown
@@ -77,6 +78,43 @@ def meshes(figures):
     return read
 
 
+def one_interpolation(figures):
+    """Snapshots with the largest difference, and the largest part of the interpolation at all nodes and snapshots; a table."""
+
+    def read(text):
+        numbers, seen = said(text), snapshots(text)
+        largest = max(numbers[name]["largest interpolation part"] for name in figures)
+        rows = []
+        for name, figure in figures.items():
+            at = seen[f"{name} widest"]
+            rows.append([figure, f"{at['t']:.0f}", f"{at['gap']:.4f}", f"{at['strain']:.4f}", small(numbers[name]["largest interpolation part"], 1e-11)])
+        numbers["all"] = {"largest interpolation part": largest}
+        return {**numbers, **seen}, markdown(["figure", "t [s]", "largest distance of a node [m]", "part of the strains [m]", "part of the interpolation [m]"], rows)
+
+    return read
+
+
+def small(number, bound):
+    return f"< {bound:.0e}".replace("e-0", "e-") if number < bound else f"{number:.2e}"
+
+
+def space(text):
+    """Lines '  space PROBLEM BODY N elements GAP STRAIN INTERPOLATION' as rows 'PROBLEM BODY N'; orders as 'PROBLEM BODY'; a table."""
+    numbers, found = {}, {}
+    for problem, body, n, *values in re.findall(rf"^  space (\S+) +(\S+) +(\d+) elements +({NUMBER}) +({NUMBER}) +({NUMBER})$", text, re.MULTILINE):
+        row = numbers[f"{problem} {body} {n}"] = dict(zip(MESHES, map(float, values)))
+        found.setdefault(problem, {}).setdefault(n, []).append(row)
+    rows = []
+    for problem, meshes in found.items():
+        coarse, fine = [of[0]["interpolation"] for of in list(meshes.values())[-2:]]
+        numbers[f"{problem} LRVF"] = {"order": math.log2(coarse / fine)}
+        for n, bodies in meshes.items():
+            rows.append([problem, n] + [small(of[c], 1e-10) for of in bodies for c in MESHES[:3]])
+    head = ["problem", "elements"] + [f"{body}, {what} [m]" for body in ("LRVF", "`Se3Beam`")
+                                      for what in ("largest distance of a node", "part of the strains", "part of the interpolation")]
+    return numbers, markdown(head, rows)
+
+
 def equal_error(text):
     """The report of EqualErrorStudy: errors by mesh, and the differences of the physical models with their bounds."""
     numbers, errors, meshes = {}, {}, []
@@ -131,9 +169,11 @@ def energies(text):
     return numbers, markdown(["arm", "integrator", "h [ms]", "E₀ [kJ]", "largest \\|E/E₀ − 1\\|", "E/E₀ − 1 at the end"], rows)
 
 
+FIGURES = {"high": "2.5, high", "medium": "2.6, medium", "fast-medium": "2.7, medium", "fast-low": "2.7, low", "axial": "2.8, 100 kN"}
 CASES = {
-    "arm": (PAGE, "robot_arm --no-plot",
-            meshes({"high": "2.5, high", "medium": "2.6, medium", "fast-medium": "2.7, medium", "fast-low": "2.7, low", "axial": "2.8, 100 kN"})),
+    "arm": (PAGE, "robot_arm --no-plot", meshes(FIGURES)),
+    "arm_se3": (PAGE, "robot_arm --case figures --body se3 --no-plot", one_interpolation(FIGURES)),
+    "space": (PAGE, "cantilever --case space --no-plot", space),
     "arm_energy": (PAGE, "robot_arm --case energy --no-plot", energies),
     "arm_unstrained_10": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 10 --no-plot", plain),
     "arm_unstrained_20": (PAGE, "robot_arm --case fast-low --stiffer 1e4 --elements 20 --no-plot", plain),
