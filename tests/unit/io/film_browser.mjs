@@ -187,7 +187,7 @@ async function measureRate(page, least) {
   await page.ask('(polybodyFilm.race(1, false), 0)');
 }
 
-/** A page that is cut off or changed shows a message, or plays if no data is lost. */
+/** A page that is cut off or changed shows a message, or plays if no data is lost, such as the padding "=" at the end. */
 async function damage(page) {
   const folder = mkdtempSync(join(tmpdir(), 'polybody-film-')), file = join(folder, 'damaged.html');
   const whole = readFileSync(options.film, 'latin1'), data = whole.indexOf('id="film">') + 10, end = whole.indexOf('</script>', data);
@@ -205,9 +205,9 @@ async function damage(page) {
       }
     })()`);
   };
-  const script = whole.indexOf('<script>');
+  const script = whole.indexOf('<script>'), last = data + whole.slice(data, end).trimEnd().replace(/=*$/, '').length - 1;
   const cuts = [script - 1, script + 1000, Math.floor((script + data) / 2), data - 60, data - 20, data, data + 1, data + 10, data + 43,
-                Math.floor((data + end) / 2), Math.floor((data + end) / 2) + 1, end - 4, end - 1];
+                Math.floor((data + end) / 2), Math.floor((data + end) / 2) + 1, end - 4, last];
   for (const cut of cuts) {
     const {playing, notice} = await told(whole.slice(0, cut));
     check(!playing && /cut off|damaged|not complete/.test(notice), `cut off at ${cut} of ${whole.length}: "${notice}"`);

@@ -141,7 +141,7 @@ class ElasticElements {
   /// after the others.
   static constexpr int middle = [] {
     for (int i = 0; i < count; ++i)
-      if (Quadrature::points[i].xi == 0.5) return i;
+      if (Quadrature::points[std::size_t(i)].xi == 0.5) return i;
     return count;
   }();
   static constexpr int stored = middle == count ? count + 1 : count;

@@ -171,8 +171,9 @@ class Lrvf : public FrameChain {
     for (int i = 0; i < 3; ++i) arm[i] = s.R(i, 1) * off[1] + s.R(i, 2) * off[2];
     Vec<T, 3> const rate = cross(w, arm), tangential = cross(bias, arm), centripetal = cross(w, rate);
     for (int i = 0; i < 3; ++i) {
-      out.frame.r[i] = q[7 * e + i] * (1.0 - p.xi) + q[7 * e + 7 + i] * p.xi + arm[i];
-      out.frame.v[i] = v[6 * e + i] * (1.0 - p.xi) + v[6 * e + 6 + i] * p.xi + rate[i];
+      auto const at_q = std::size_t(7 * e + i), at_v = std::size_t(6 * e + i);
+      out.frame.r[i] = q[at_q] * (1.0 - p.xi) + q[at_q + 7] * p.xi + arm[i];
+      out.frame.v[i] = v[at_v] * (1.0 - p.xi) + v[at_v + 6] * p.xi + rate[i];
       out.frame.w[i] = w[i];
       out.bias[i] = tangential[i] + centripetal[i];
       out.bias[3 + i] = bias[i];

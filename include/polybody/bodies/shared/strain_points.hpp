@@ -118,7 +118,7 @@ class StrainPoints {
   template <int n>
   void set_free(Vec<double, n> const& x) {
     Mat<double, m, np> b;
-    for (int g = 0; g < Law::points; ++g)
+    for (std::size_t g = 0; g < std::size_t(Law::points); ++g)
       Law::template evaluate<double>(P::parameters(maps_[g], Coordinates<double, n>(x)), free_[g], b);
   }
 
