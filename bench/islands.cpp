@@ -1,8 +1,6 @@
 // Balls (0.1 m, 1 kg) that nothing connects, on a plane with friction 0.8, for 0.5 s: rolling, sliding, and landing
 // with slip from 0.02 to 0.32 m. Counters:
-// - per_ball: time per ball and step [ns]; its ratio to that of one ball is the cost that independent balls impose on
-// each
-//   other;
+// - per_ball: time per ball and step [ns]; its ratio to that of one ball is the cost of other independent balls;
 // - error: root mean square distance of the first 200 balls at 0.5 s from their places in a run of the same code with
 //   steps of 1/64 ms [m]. The contact laws of the codes differ, so that each code has its own reference.
 // Contacts are `Contact`, or one `ContactSet`. If MuJoCo is found (Debian: libmujoco-dev), it moves the landing balls
