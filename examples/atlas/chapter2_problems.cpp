@@ -49,11 +49,13 @@ std::vector<Index> const cubic{2, 4, 8, 16, 32, 64};
 // Bodies with their meshes. The spatial bodies have coarser meshes.
 std::vector<Combination> bodies() {
   return {{"LRVF in the plane", {{5, 10, 20, 40, 80, 160, 320}, steps}, "lrvf"},
+          {"SE(3) beam in the plane", {{5, 10, 20, 40, 80, 160, 320}, steps}, "se3"},
           {"ANCF cable, Green strain", {cubic, steps}, "ancf"},
           {"ANCF cable, engineering strain", {cubic, steps}, "ancf-engineering"},
           {"FFR, nodal coordinates", {{2, 4, 8, 16, 32}, few}, "ffr"},
           {"FFR, modal coordinates", {{1, 2, 4, 8}, few}, "ffr-modal"},
           {"LRVF in space", {{5, 10, 20, 40, 80, 160}, steps}, "lrvf-space"},
+          {"SE(3) beam in space", {{5, 10, 20, 40, 80, 160}, steps}, "se3-space"},
           {"ANCF beam, elastic line", {{4, 8, 16, 32, 64}, steps}, "ancf-beam"},
           {"ANCF beam, continuum", {{4, 8, 16, 32, 64}, steps}, "ancf-beam-continuum"}};
 }

@@ -2,6 +2,7 @@
 // the program tracked_vehicle.
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "../vehicle_links/links.hpp"
 #include "low_pass.hpp"
@@ -84,6 +85,7 @@ void add_link_formulations(Formulations& to) {
   add_links<Ffr, MeshKind::modes>(to, of, {"ffr", "constraint", "FFR, modal coordinates"});
   add_links<Ffr, MeshKind::modes>(to, of, {"fe", "constraint", "FFR of finite elements"});
   add_links<Lrvf<>>(to, of, {"lrvf", "constraint", "LRVF in space"});
+  add_links<Se3Beam>(to, of, {"se3", "constraint", "SE(3) beam in space"});
   add_links<AncfBeam<ElasticLine>, MeshKind::elements, AncfLinear>(to, of,
                                                                    {"beam", "ancf-linear", "ANCF beam, elastic line"});
   add_links<AncfBeam<Continuum<>>, MeshKind::elements, AncfLinear>(
@@ -115,7 +117,7 @@ Problem vehicle_pins() {
 Problem vehicle_links() {
   return {
       .name = "vehicle_links",
-      .title = "Tracked vehicle with seven link formulations",
+      .title = "Tracked vehicle with eight link formulations",
       .text = start +
               "The pins are constraints, or `AncfLinear` for ANCF links.\nThe output is the vertical displacement of "
               "the chassis, from 0 to 3 s.",
