@@ -76,11 +76,12 @@ void add_bands(Figure& f, std::vector<SettingRuns> const& settings, double scale
                std::function<Filtered(SettingRuns const&, std::size_t)> const& history) {
   if (settings.size() < 2) return;
   std::vector<Curve> behind;
+  std::vector<int> const colours = formulation_colours(settings.front().runs.comparison);
   for (std::size_t k = 0; k < 2; ++k)
     behind.push_back(
         Band(settings, [&](SettingRuns const& s) {
           return history(s, k);
-        }).curve(k == 0 ? "rigid, range over settings" : "ANCF, range over settings", int(k), scale, every));
+        }).curve(k == 0 ? "rigid, range over settings" : "ANCF, range over settings", colours[k], scale, every));
   f.curves.insert(f.curves.begin(), behind.begin(), behind.end());
 }
 
@@ -155,25 +156,28 @@ Figure bending_figure(Options const& o, StressRuns const& runs) {
            .x_label = "t [s]",
            .y_label = "stress [MPa]",
            .x_range = {{0.95 * o.end_time, o.end_time}}};
+  std::vector<int> const colours = formulation_colours(runs.comparison);
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k)
     f.curves.push_back(
-        curve(label_of(runs, k), runs.times(k), runs.bending(k), int(k), 1e-6 * m113::youngs_modulus, 1));
+        curve(label_of(runs, k), runs.times(k), runs.bending(k), colours[k], 1e-6 * m113::youngs_modulus, 1));
   return f;
 }
 
 Figure strain_figure(Options const& o, StressRuns const& runs, std::string title, bool filter, double from, double to) {
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = "axial strain [10⁻⁵]", .x_range = {{from, to}}};
   std::size_t const count = runs.comparison.runs.size();
+  std::vector<int> const colours = formulation_colours(runs.comparison);
   for (std::size_t k = 0; k < count; ++k) {
     f.curves.push_back(curve(label_of(runs, k), runs.times(k), filter ? runs.filtered(k, o.cut_off) : runs.raw(k),
-                             int(k), 1e5, filter ? 4 : 1));
+                             colours[k], 1e5, filter ? 4 : 1));
     f.curves.back().width = k == 0 ? 3.0 : 1.2;
   }
   for (std::size_t k = 0; k < count; ++k)
     if (std::vector<double> const& x = runs.vibrating(k); !x.empty()) {
       f.curves.push_back(curve("rigid, vibrating", runs.times(k), filter ? runs.filtered(k, x, o.cut_off) : x,
-                               int(count), 1e5, filter ? 4 : 1));
+                               colours[k], 1e5, filter ? 4 : 1));
       f.curves.back().width = 1.2;
+      f.curves.back().style = "dashed";
     }
   return f;
 }
@@ -261,6 +265,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
            .x_label = "range [MPa]",
            .y_label = "cycles in " + number(o.end_time) + " s",
            .log_y = true};
+  std::vector<int> const colours = formulation_colours(runs.comparison);
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
     auto const cycles = cycles_of(runs.raw(k));
     if (cycles.empty()) continue;
@@ -270,7 +275,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
     double const width = 0.25e6;
     std::vector<double> bins = binned(cycles, width);
     bins.push_back(bins.back());
-    Curve c{.label = label_of(runs, k), .style = "steps", .colour = int(k)};
+    Curve c{.label = label_of(runs, k), .style = "steps", .colour = colours[k]};
     for (std::size_t i = 0; i < bins.size(); ++i) {
       c.x.push_back(1e-6 * width * double(i));
       c.y.push_back(bins[i]);

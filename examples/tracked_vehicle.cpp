@@ -172,9 +172,10 @@ class Figures {
              .y_label = "z [m]",
              .equal_axes = true,
              .height_px = 400};
+    std::vector<int> const colours = formulation_colours(all.comparison);
     for (std::size_t k = 0; k < all.comparison.runs.size(); ++k)
       f.curves.push_back(curve(name_of(all, k), all.history(k, "link x in chassis [m]"),
-                               all.history(k, "link z in chassis [m]"), int(k)));
+                               all.history(k, "link z in chassis [m]"), colours[k]));
     draw(o_, nested(f), name("10"));
     for (std::size_t k = 1; k < all.comparison.runs.size(); ++k) path_line(lines_, all, k);
   }

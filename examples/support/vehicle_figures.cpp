@@ -78,10 +78,11 @@ Figure history_figure(Runs const& runs, std::string const& output, std::string t
                       double scale) {
   Figure f{.title = std::move(title), .x_label = "t [s]", .y_label = std::move(label)};
   std::size_t const every = cut_off > 0.0 || output.find("force") == std::string::npos ? 4 : 1;
+  std::vector<int> const colours = formulation_colours(runs.comparison);
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
     Filtered const h =
         cut_off > 0.0 ? filtered(runs, k, output, cut_off) : Filtered{runs.times(k), runs.history(k, output)};
-    f.curves.push_back(curve(runs.comparison.runs[k].name, h.times, h.values, int(k), scale, every));
+    f.curves.push_back(curve(runs.comparison.runs[k].name, h.times, h.values, colours[k], scale, every));
   }
   return f;
 }

@@ -129,11 +129,12 @@ void ensemble(Options const& o) {
            .x_label = "t [s]",
            .y_label = "axial strain [10⁻⁵]",
            .x_range = {{0.0, o.end_time}}};
+  std::vector<int> const colours = formulation_colours(settings.front().runs.comparison);
   char const* const names[] = {"rigid, decoupled", "ANCF cables"};
   for (std::size_t k = 0; k < 2; ++k)
     f.curves.push_back(Band(settings, [&](SettingRuns const& s) {
                          return filtered_strain(s.runs, k, o.cut_off);
-                       }).curve(names[k], int(k), 1e5));
+                       }).curve(names[k], colours[k], 1e5));
   draw(o, f, "ensemble");
 }
 

@@ -170,6 +170,8 @@ Comparison run_scenario(LinkSettings const& o, Combination const& c, std::string
   by_integrator(o, c, [&](auto const& integrator) {
     made = compare(ScenarioCase{make}, Integrated<std::remove_cvref_t<decltype(integrator)>>{name, integrator});
   });
+  made.runs.front().family = c.links.family;
+  made.runs.front().policy = c.links.enforcement;
   return require_complete(std::move(made));
 }
 

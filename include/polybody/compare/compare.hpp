@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/family.hpp>
 #include <polybody/compare/comparison.hpp>
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/run/sampling.hpp>
@@ -136,6 +137,12 @@ template <class F>
 std::string name_of(F const& formulation) {
   return formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
 }
+/// Family of the body of a formulation. `modal` is true if a study varies the number of modes.
+template <class F>
+std::string_view family_of(F const& formulation, bool modal) {
+  bool const has_modes = modal || (F::has_modes && formulation.mesh.modes.has_value());
+  return has_modes ? families::ffr_modal : formulation_family<typename F::BodyType>;
+}
 /// Name `own`, with a number appended if an `earlier` run has the same name.
 template <class = void>
 std::string unique_name(std::vector<ComparedRun> const& earlier, std::string const& own) {
@@ -236,6 +243,8 @@ void add_run(C const& make_case, F const& formulation, Comparison& c) {
   auto scenario = make_case(formulation);
   ComparedRun out;
   out.name = unique_name(c.runs, name_of(formulation));
+  if constexpr (requires { typename F::BodyType; }) out.family = family_of(formulation, false);
+  if constexpr (requires { F::PolicyType::name; }) out.policy = F::PolicyType::name;
   out.problem_size = problem_size(scenario.model);
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
   check_outputs(out, c.runs);

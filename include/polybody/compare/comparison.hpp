@@ -20,6 +20,8 @@ namespace polybody {
 /// Results of one run, a column of the report. A failed run contains the results up to its failure.
 struct ComparedRun {
   std::string name;                          ///< name of the formulation
+  std::string family = {};                   ///< family of the body, see bodies/shared/family.hpp; empty: unknown
+  std::string policy = {};                   ///< name of the policy of the joints; empty: unknown
   std::string failure = {};                  ///< message of the exception that ended the run; empty for a complete run
   ProblemSize problem_size;                  ///< problem size of the model
   RunReport run;                             ///< steps, iterations and other counts of the run

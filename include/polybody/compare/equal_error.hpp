@@ -7,7 +7,6 @@
 #include <ctime>
 #include <functional>
 
-#include <polybody/bodies/shared/family.hpp>
 #include <polybody/compare/equal_error_evaluation.hpp>
 #include <polybody/compare/work_precision.hpp>
 
@@ -52,13 +51,6 @@ struct StudyOutput {
   std::function<double(State const&)> value = {};
   std::vector<double> breakpoints = {};
 };
-
-/// Family of the body of a formulation. `modal` is true if the study varies the number of modes.
-template <class F>
-std::string_view family_of(F const& formulation, bool modal) {
-  bool const has_modes = modal || (F::has_modes && formulation.mesh.modes.has_value());
-  return has_modes ? families::ffr_modal : formulation_family<typename F::BodyType>;
-}
 
 /// Samples the recorded output at the times of the report. The first recorded run determines these times.
 template <class = void>

@@ -8,8 +8,32 @@
 
 #include <polybody/compare/comparison.hpp>
 #include <polybody/io/figure.hpp>
+#include <polybody/io/formulation_style.hpp>
 
-namespace polybody::detail {
+namespace polybody {
+
+/// Colour of each run in figures, an index into the colours of plot.hpp. It is the colour of the run's family of bodies
+/// (`formulation_style`) or, if two runs share one, of its policy (`policy_colours`). If two policies also share a
+/// colour, or if a colour is unknown, the runs have the colours 0, 1, 2, ….
+template <class = void>
+std::vector<int> formulation_colours(Comparison const& c) {
+  auto const colours = [&](auto const& of) {
+    std::vector<int> all;
+    for (ComparedRun const& run : c.runs)
+      if (int const colour = of(run); colour >= 0 && std::ranges::find(all, colour) == all.end()) all.push_back(colour);
+    return all;
+  };
+  std::vector<int> found = colours([](ComparedRun const& run) { return formulation_style(run.family).colour; });
+  if (found.size() < c.runs.size())
+    found = colours([](ComparedRun const& run) { return formulation_colour(run.policy); });
+  if (found.size() < c.runs.size()) {
+    found.clear();
+    for (std::size_t i = 0; i < c.runs.size(); ++i) found.push_back(int(i));
+  }
+  return found;
+}
+
+namespace detail {
 
 /// Figure of `value(run, k)`, k = 0, 1, …, over `run.times`, with one curve per run. The curve of the first run is
 /// thick; the others are dashed lines over this curve.
@@ -17,9 +41,10 @@ template <class = void>
 Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
                  std::function<double(ComparedRun const&, std::size_t)> const& value) {
   Figure figure{.title = title, .x_label = "t [s]", .y_label = y_label, .width_px = 900, .height_px = 560};
+  std::vector<int> const colours = formulation_colours(c);
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     ComparedRun const& run = c.runs[i];
-    Curve curve{.x = run.times, .label = run.name, .colour = int(i)};
+    Curve curve{.x = run.times, .label = run.name, .colour = colours[i]};
     curve.style = i == 0 ? "lines" : "dashed";
     curve.width = i == 0 ? 3.0 : 1.5;
     for (std::size_t k = 0; k < run.times.size(); ++k) curve.y.push_back(value(run, k));
@@ -169,7 +194,7 @@ std::vector<Figure> output_figures(Comparison const& c) {
 /// Adds a vertical line at the computing time of the first run, behind the points of the other runs. The time axis is
 /// logarithmic if the times span more than a factor of 10.
 template <class = void>
-void add_first_cost(ComparedRun const& first, Figure& figure) {
+void add_first_cost(ComparedRun const& first, int colour, Figure& figure) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0, soonest = first.cpu, latest = soonest;
   for (Curve const& curve : figure.curves) {
     low = std::min(low, curve.y[0]);
@@ -184,7 +209,7 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
                                                  .y = {0.5 * low, 2.0 * high},
                                                  .label = first.name,
                                                  .style = "dashed",
-                                                 .colour = 0});
+                                                 .colour = colour});
 }
 
 /// Figure of the largest relative difference of each run from the first run, over the CPU time of the run. Returns no
@@ -198,6 +223,7 @@ std::vector<Figure> cost_figure(Comparison const& c) {
                 .log_y = true,
                 .width_px = 900,
                 .height_px = 560};
+  std::vector<int> const colours = formulation_colours(c);
   for (std::size_t k = 1; k < c.runs.size(); ++k) {
     double most = 0.0;
     for (std::size_t i = 0; i < first.outputs.size(); ++i)
@@ -207,12 +233,14 @@ std::vector<Figure> cost_figure(Comparison const& c) {
                                .y = {most},
                                .label = c.runs[k].name,
                                .style = "points",
-                               .colour = int(k),
+                               .colour = colours[k],
                                .width = 3.0});
   }
   if (figure.curves.empty()) return {};
-  add_first_cost(first, figure);
+  add_first_cost(first, colours.front(), figure);
   return {std::move(figure)};
 }
 
-}  // namespace polybody::detail
+}  // namespace detail
+
+}  // namespace polybody

@@ -72,6 +72,8 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
   double const mg = 9.81, held = mg * std::hypot(2.5 * std::cos(end_angle), 0.25 * std::sin(end_angle));
   for (ComparedRun const& run : c.runs) {
     EXPECT_EQ(run.run.steps, 500);
+    EXPECT_EQ(run.family, families::rigid);
+    EXPECT_EQ(run.policy, &run == &c.runs[1] ? "Penalty" : "Constraint");
     ASSERT_EQ(run.times.size(), 501u);
     EXPECT_NEAR(run.outputs[0].back(), -std::cos(end_angle), 2e-5) << run.name;
     EXPECT_NEAR(run.energy_end - run.energy_start, 0.0, 2e-3) << run.name;

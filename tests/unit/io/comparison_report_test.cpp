@@ -254,6 +254,26 @@ TEST_F(ComparisonReport, DifferencesCountByLengthsThatMatter) {
   EXPECT_EQ(detail::outputs_by_difference(c), (std::vector<std::size_t>{2, 1, 0}));
 }
 
+TEST_F(ComparisonReport, RunsHaveTheColoursOfTheirFormulations) {
+  Comparison c = oscillators();
+  EXPECT_EQ(formulation_colours(c), (std::vector{0, 1}));  // families and policies are unknown
+  c.runs[0].family = families::cable_green;
+  c.runs[1].family = families::rigid;
+  std::vector<int> const families_differ{formulation_colour(families::cable_green),
+                                         formulation_colour(families::rigid)};
+  EXPECT_EQ(formulation_colours(c), families_differ);
+  for (Figure const& figure : detail::output_figures(c))
+    for (Curve const& curve : figure.curves)
+      EXPECT_EQ(curve.colour, families_differ[curve.label == c.runs[1].name]) << figure.title;
+  for (ComparedRun& run : c.runs) run.family = families::rigid;
+  c.runs[0].policy = "Bushing";
+  c.runs[1].policy = "JointCoordinates";
+  EXPECT_EQ(formulation_colours(c),
+            (std::vector{formulation_colour("Bushing"), formulation_colour("JointCoordinates")}));
+  c.runs[0].policy = "JointCoordinates";
+  EXPECT_EQ(formulation_colours(c), (std::vector{0, 1}));
+}
+
 TEST_F(ComparisonReport, LargeDifferencesDoNotHideSmallOnes) {
   Comparison c = oscillators();
   for (double const size : {1e-3, -5e-3, 2e-5}) {
