@@ -22,7 +22,7 @@ class IslandMaker;
 }
 
 /// Primary template for invalid lists of types: a static assertion gives the reason.
-template <class BodyList, class JointList, class ForceList = Forces<>>
+template <class BodyList, class JointList = Joints<>, class ForceList = Forces<>>
 class Model {
   static_assert(detail::position_of_list<BodyList> == 1 && detail::position_of_list<JointList> == 2 &&
                     detail::position_of_list<ForceList> == 3,

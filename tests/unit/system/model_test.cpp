@@ -39,6 +39,14 @@ TEST(Model, CountsWhatWasAdded) {
   EXPECT_EQ(problem_size(model).degrees_of_freedom, 1);
 }
 
+TEST(Model, HasNoJointsAndForcesByDefault) {
+  Model<Bodies<planar::Rigid>> model{Gravity{0, -9.81, 0}};
+  auto const ball = model.add(planar::Rigid(2.0, 0.1));
+  State x = model.reference_state();
+  simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 1e-2}).run();
+  EXPECT_NEAR(position(model, x, ball.centre())[1], -0.5 * 9.81, 1e-9);
+}
+
 TEST(Model, NamesWhatHasNoName) {
   Plane model;
   auto const a = model.add(bar()), named = model.add(bar(), "boom"), c = model.add(bar());
