@@ -140,8 +140,8 @@ std::string name_of(F const& formulation) {
 /// Family of the body of a formulation. `modal` is true if a study varies the number of modes.
 template <class F>
 std::string_view family_of(F const& formulation, bool modal) {
-  bool const has_modes = modal || (F::has_modes && formulation.mesh.modes.has_value());
-  return has_modes ? families::ffr_modal : formulation_family<typename F::BodyType>;
+  if constexpr (requires { F::has_modes; }) modal = modal || (F::has_modes && formulation.mesh.modes.has_value());
+  return modal ? families::ffr_modal : formulation_family<typename F::BodyType>;
 }
 /// Name `own`, with a number appended if an `earlier` run has the same name.
 template <class = void>
