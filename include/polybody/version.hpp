@@ -1,4 +1,6 @@
 #pragma once
+/// \file
+/// Version number of the library.
 
 namespace polybody {
 

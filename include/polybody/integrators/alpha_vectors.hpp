@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Vectors of a step of the generalised-α family, independent of the type of the model.
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/anderson.hpp>
 #include <polybody/system/state.hpp>

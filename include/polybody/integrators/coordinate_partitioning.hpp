@@ -1,4 +1,8 @@
 #pragma once
+/// \file
+/// Generalised coordinate partitioning: steps integrate the independent coordinates, and the constraint equations give
+/// the dependent ones.
+
 #include <limits>
 #include <utility>
 

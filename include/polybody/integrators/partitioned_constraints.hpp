@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Partition of dense constraint equations into dependent and independent columns.
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Partition of sparse constraint equations into dependent and independent columns.
+
 #include <memory>
 
 #include <Eigen/SparseLU>

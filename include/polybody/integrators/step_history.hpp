@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Divided differences of the last steps of a run, stored in the history of a state.
+
 #include <algorithm>
 #include <array>
 

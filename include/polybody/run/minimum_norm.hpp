@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Minimum-norm multipliers of redundant constraints.
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/redundant_rows.hpp>

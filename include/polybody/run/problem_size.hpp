@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Numbers of coordinates, constraint equations and degrees of freedom of a model.
+
 #include <polybody/elimination/reduced_coordinates.hpp>
 
 namespace polybody {
