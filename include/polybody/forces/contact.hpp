@@ -5,6 +5,7 @@
 
 #include <polybody/forces/contact_friction.hpp>
 #include <polybody/forces/contact_reach.hpp>
+#include <polybody/forces/contact_tangent.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/forces/normal_force.hpp>
 
@@ -204,9 +205,8 @@ struct Contact {
   /// secant slope is never less than the derivative of the friction force. Newton's method therefore approaches v = 0
   /// from one side and does not overshoot. The rotation of n, the change of F_t with N, and changes of the weights of
   /// faces are neglected.
-  /// If `between` is not null, Jaᵀ(N′ n nᵀ + F′ (1 − n nᵀ))Jb is added to it.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
-                     Mat<double, 6, 6>& of_b, Mat<double, 6, 6>* between = nullptr) const {
+                     Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
       if (n <= 0.0) return;
       double const across = normal.slope(p.depth, -v.dot(p.normal), ck, cd) * p.handover.share;
@@ -218,7 +218,22 @@ struct Contact {
       Vec3 const arm_a = p.place - f[0].r, arm_b = p.place - f[1].r;
       add(p, across, along, arm_a, arm_a, of_a);
       add(p, across, along, arm_b, arm_b, of_b);
-      if (between) add(p, across, along, arm_a, arm_b, *between);
+    });
+  }
+
+  /// Adds the stiffness of the pair with respect to the motion of both bodies to `to`, with the matrix K of
+  /// `SlipTangent` at each contact point. ratio(slot, v, s) returns the friction ratio w (3) at the slip velocity v
+  /// (3), with s = √(v² + v_s²). \param adds_remainder adds only the difference between K and the derivative of the
+  /// force
+  template <class Ratio>
+  void pair_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, PairStiffness const& to,
+                      Ratio&& ratio, bool adds_remainder) const {
+    for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
+      if (n <= 0.0) return;
+      double const vn = v.dot(p.normal);
+      SlipTangent k{normal.slope(p.depth, -vn, ck, cd) * p.handover.share, p.normal, Vec3(v - vn * p.normal)};
+      k.add_friction(friction, n, cd, [&](double s) { return ratio(p.slot, k.v, s); });
+      to.add(adds_remainder ? k.remainder() : k.matrix(), p.place - f[0].r, p.place - f[1].r);
     });
   }
 

@@ -30,12 +30,14 @@ struct Friction {
   }
   /// The ratio `resistance` for doubles, multiplied by `cd`; `speed2` [m²/s²] is the squared slip velocity, n [N] the
   /// normal force.
-  double slope(double speed2, double n, double cd) const {
-    return cd * coefficient * n / std::sqrt(speed2 + slip_speed * slip_speed);
-  }
+  double slope(double speed2, double n, double cd) const { return cd * coefficient * n / regularised_speed(speed2); }
+  /// √(v² + v_s²) [m/s]; `speed2` [m²/s²] is the squared slip velocity v².
+  double regularised_speed(double speed2) const { return std::sqrt(speed2 + slip_speed * slip_speed); }
 };
 
 /// Friction law of a contact without states: the ratio of friction force and slip velocity at a contact point.
+/// Optional: `regularised_speed(speed2)`, if the friction is −μ N v/s with s² = v² + v_s² and a constant v_s. Steps
+/// with a `ContactSet` then use the exact tangent of the friction.
 template <class F>
 concept SlipFriction = requires(F const law, double x) {
   { law.coefficient } -> std::convertible_to<double>;

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Contacts between many markers and a few partners.
+
 #include <algorithm>
 #include <array>
 #include <bit>

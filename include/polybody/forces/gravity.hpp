@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Uniform gravitational field of a model.
+
 #include <polybody/math/types.hpp>
 
 namespace polybody {

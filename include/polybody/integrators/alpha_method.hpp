@@ -222,13 +222,15 @@ struct AlphaMethod {
         w.tangent.evaluate(system, {w.q, w.v, x.t + h});
       }
       if (recomputes_held) w.forward.hold(system, w.q, w.v, x.t + h);
-      bad = method.refactor(system, h, place(), w, surrogate_friction);
+      bool const exact = w.tangent.needs_exact_contacts(w.reused_factorisation.theta);
+      bad = method.refactor(system, h, place(), w, surrogate_friction && !exact);
       if (ahead > 0.0 && w.tangent.carries_multipliers()) {
         system.plus(x.q, w.dq, w.q);
         w.tangent.return_to({w.q, w.v, x.t + h});
       }
       return bad < 0;
     }
+    bool renews() const { return w.tangent.follows_friction(); }
     CorrectionSize solve() {
       w.tangent.correct(w.rhs, w.y);
       bool const finite = all_finite(w.y);
@@ -299,13 +301,13 @@ struct AlphaMethod {
   /// Performs one step from x. x changes only if Newton's method converges. A step that does not converge is repeated
   /// without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of the
   /// iterate, because G rotates far within a step near singular configurations. In models with force groups, a second
-  /// repetition uses the approximate stiffness of the groups, because friction jumps. If the last tangent couples the
-  /// bodies of contacts, the first repetition uses this stiffness and there is no second one. If the rank of G
-  /// decreases within a stabilised step, a last repetition omits μ.
+  /// repetition uses the approximate stiffness of the groups, because friction jumps. If the rank of G decreases within
+  /// a stabilised step, a last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     bool const careful = effort > 0;
     guess(x, h, careful, w);
+    w.tangent.begin_step();
     bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= w.tangent.repetitions(system);
     if (both_multiplier_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.reused_factorisation.usable = false;
@@ -327,7 +329,7 @@ struct AlphaMethod {
                             options.always_refactor ? 0.0 : 0.4,
                             both_multiplier_sets,
                             both_multiplier_sets && careful,
-                            effort != 1 || w.tangent.couples_contacts()};
+                            effort != 1};
     if (w.tangent.carries_multipliers()) w.reused_factorisation.theta = std::max(w.reused_factorisation.theta, 0.3);
     NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&

@@ -2,6 +2,7 @@
 /// \file
 /// Equations of an implicit step: evaluation, residual, corrections of Newton's method, and tangent.
 
+#include <polybody/solvers/gmres.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
 #include <polybody/system/contact_coupling.hpp>
 
@@ -29,11 +30,13 @@ class StepTangent {
       full_q_.setZero(system.layout().coordinates);
       full_v_.setZero(system.layout().velocities);
     }
-    // D is symmetric and positive definite without multipliers and first-order states
+    // D has an inverse without multipliers and first-order states
     couples_ = !system.data().found_pairs.empty() && !coordinates_ && system.rows() == 0 && system.layout().states == 0;
-    if (couples_) coupling_.reserve(2 * system.velocities());
-    if (couples_)
-      for (VecX* const x : {&cg_r_, &cg_z_, &cg_p_, &cg_dp_, &cg_ap_}) x->setZero(system.velocities());
+    if (couples_) {
+      coupling_.reserve(4 * system.velocities());
+      coupling_.ratios.reserve(2 * system.velocities());
+      gmres_.resize(system.velocities());
+    }
     left_out_.clear();
     forget();
   }
@@ -43,6 +46,13 @@ class StepTangent {
     included_ = went_ = false;
     left_ = since_ = 0;
     stay_ = shortest_stay;
+    coupling_.ratios.forget();
+  }
+  /// Starts the tangents of a step. The first tangent uses the friction ratios of the last tangent.
+  void begin_step() {
+    coupling_.ratios.begin_step();
+    factored_ = 0;
+    exact_contacts_ = false;
   }
 
   /// Every later factorisation drops these redundant `equations`.
@@ -84,17 +94,23 @@ class StepTangent {
   /// estimates. The size of the correction does not include this error, so that the contraction rate of another step
   /// does not predict the next correction.
   bool carries_multipliers() const { return carries_multipliers_; }
-  /// True if the last factorised tangent has blocks that couple the bodies of contacts.
-  bool couples_contacts() const { return !coupling_.empty(); }
+  /// True if each iteration factorises the tangent, because friction acts between coupled bodies. Newton's method then
+  /// converges quadratically, except for the terms that `SlipTangent` omits.
+  bool follows_friction() const { return !coupling_.ratios.empty(); }
+  /// True if the next tangent of this step contains the derivatives of coupled contacts. They cost more than the
+  /// approximate stiffness. The fourth tangent of a step uses them if the contraction rate `theta` exceeds a quarter.
+  bool needs_exact_contacts(double theta) {
+    return exact_contacts_ = exact_contacts_ || (follows_friction() && factored_ > 2 && theta > 0.25);
+  }
   /// Number of repetitions of a step that does not converge, except the last one without μ (`AlphaMethod`).
-  int repetitions(System const& s) const { return s.layout().has_groups && !couples_contacts() ? 2 : 1; }
+  static int repetitions(System const& s) { return s.layout().has_groups ? 2 : 1; }
   /// Returns the tree to the state `at` after a factorisation in another state. Requires `carries_multipliers()`.
   void return_to(At<double> const& at) { coordinates_->expand(at.q, at.v, full_q_, full_v_); }
   /// Factorises the tangent at x, the state of the last evaluation. Returns −1 on success, otherwise the index of the
   /// equation without a pivot.
   Index factor(System& system, StepPosition const& x, TangentCoefficients k) {
-    coupling_.clear();
     if (couples_) k.coupling = &coupling_;
+    ++factored_;
     return solver().factor_tangent(system, x, k, terms());
   }
 
@@ -127,40 +143,18 @@ class StepTangent {
   }
 
  private:
-  /// Solves (D + C) y = rhs with the factorised blocks D of all bodies and the blocks C of `coupling_`, by the
-  /// conjugate gradient method with the preconditioner D. The product D p follows the recursion of p. If D + C is not
-  /// positive definite along p, the solution so far is used, or D⁻¹ rhs.
+  /// Solves (D + C) y = rhs with the factorised blocks D of all bodies and the blocks C of `coupling_`, as
+  /// (1 + C D⁻¹) z = rhs and y = D⁻¹ z.
   void solve_coupled(VecX const& rhs, VecX& y) {
-    solver().solve(rhs, cg_z_);
-    cg_r_ = cg_dp_ = rhs;
-    cg_p_ = cg_z_;
-    double rz = cg_r_.dot(cg_z_);
-    double const enough = coupled_residual * coupled_residual * rz;
-    y.setZero(rhs.size());
-    for (int k = 0; k < most_coupled_iterations && rz > enough; ++k) {
-      cg_ap_ = cg_dp_;
-      coupling_.add_product(cg_p_, cg_ap_);
-      double const pap = cg_p_.dot(cg_ap_);
-      if (!(pap > 0.0)) {
-        if (k == 0) y = cg_z_;
-        return;
-      }
-      double const step = rz / pap;
-      for (Index i = 0; i < y.size(); ++i) {
-        y[i] += step * cg_p_[i];
-        cg_r_[i] -= step * cg_ap_[i];
-      }
-      solver().solve(cg_r_, cg_z_);
-      double const before = std::exchange(rz, cg_r_.dot(cg_z_)), ratio = rz / before;
-      for (Index i = 0; i < y.size(); ++i) {
-        cg_p_[i] = cg_z_[i] + ratio * cg_p_[i];
-        cg_dp_[i] = cg_r_[i] + ratio * cg_dp_[i];
-      }
-    }
+    VecX const& z = gmres_.solve(rhs, coupled_residual, most_coupled_products, [&](VecX const& x, VecX& sum) {
+      solver().solve(x, y);
+      coupling_.add_product(y, sum);
+    });
+    solver().solve(z, y);
   }
 
-  static constexpr double coupled_residual = 1e-3;  // relative residual of the conjugate gradient method
-  static constexpr int most_coupled_iterations = 200;
+  static constexpr double coupled_residual = 1e-3;  // relative residual of coupled solutions
+  static constexpr int most_coupled_products = 200;
   static constexpr long shortest_stay = 8, longest_stay = 1L << 20;
 
   TangentSolver<Solver> first_, second_;
@@ -169,7 +163,9 @@ class StepTangent {
   VecX balance_, solution_, full_q_, full_v_;
   bool couples_ = false;  ///< true if the blocks of a contact set between bodies are evaluated
   ContactCoupling coupling_;
-  VecX cg_r_, cg_z_, cg_p_, cg_dp_, cg_ap_;
+  int factored_ = 0;             ///< number of factorisations in this step
+  bool exact_contacts_ = false;  ///< true if tangents of this step contain the derivatives of coupled contacts
+  Gmres gmres_;
   Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
   long stay_ = shortest_stay;  ///< length of a period with second-order terms, in steps

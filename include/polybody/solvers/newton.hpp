@@ -171,6 +171,11 @@ struct NewtonSolve {
     follows = false;
     return reused.usable = renewed = true;
   }
+  /// True if the problem requires a new factorisation in each iteration, and the budget admits it.
+  bool wants_renewal() const {
+    if constexpr (requires { problem.renews(); }) return problem.renews() && affords(options.factorisation_cost);
+    return false;
+  }
   /// Returns to the first iterate if a correction with the factorisation of an earlier solve was too large
   /// (`is_far_from_solution`).
   bool restart() {
@@ -283,7 +288,7 @@ struct NewtonSolve {
       reused.usable = false;
       return result;
     };
-    if (!reused.usable || options.always_refactor) {
+    if (!reused.usable || options.always_refactor || wants_renewal()) {
       if (!renew()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
       if (progress.before == 0.0) reused.theta = 1.0;
     }
@@ -322,6 +327,7 @@ struct NewtonSolve {
 ///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that
 ///                             `solve` computes and `apply` adds
+///   bool renews()             (optional) true if each iteration factorises the tangent
 ///   bool search(int&)         (optional) evaluates the iterate, shortens the last correction if it overshoots, and
 ///                             adds the number of further evaluations
 ///   bool is_far_from_solution(double), void restart()  (optional) true if a correction of this norm is larger than the

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Selection of the contact pairs of force groups that have blocks in a matrix.
+
 #include <algorithm>
 
 #include <polybody/math/sequence.hpp>

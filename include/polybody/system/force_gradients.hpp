@@ -126,26 +126,61 @@ void add_multiplier_columns(ForceEntry<F> const& e, GradientAt const& x, Data<do
   }
 }
 
+struct AnyRatio {
+  Vec3 operator()(int slot, Vec3 const& v, double s) const;
+};
+/// Contact law with a stiffness of the pair, which contains the blocks that couple both markers.
+template <class L>
+concept HasPairStiffness = requires(L const law, std::array<Frame<double>, 2> const frames, PairStiffness const& to) {
+  law.pair_stiffness(frames, 1.0, 1.0, to, AnyRatio{}, true);
+};
+
+/// Adds the stiffness of both markers of a pair to `to`, without x.scale, and the blocks that couple both markers to
+/// `c.coupling`. Unless `c.surrogate_friction` is true, the stiffness is the derivative of the wrenches and the
+/// remainder of the friction ratios.
+template <HasPairStiffness L>
+void add_pair_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
+                        std::array<Mat<double, 6, 6>*, 2> const& to) {
+  Mat<double, 6, 6> ab, ba;
+  std::fill_n(ab.data(), 36, 0.0);
+  std::fill_n(ba.data(), 36, 0.0);
+  auto const frames = frames_at(at, data);
+  auto const ratio = [&](int slot, Vec3 const& v, double s) {
+    return x.c.coupling->ratios.ratio({at[0], at[1], slot}, v, s);
+  };
+  law.pair_stiffness(frames, x.c.stiffness, x.c.damping, {*to[0], *to[1], ab, ba}, ratio, !x.c.surrogate_friction);
+  if (!x.c.surrogate_friction) {
+    Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
+    for (int col = 0; col < 6; ++col)
+      for (int row = 0; row < 6; ++row) {
+        (*to[0])(row, col) -= s(row, col);
+        (*to[1])(row, col) -= s(6 + row, 6 + col);
+        ab(row, col) += s(row, 6 + col);
+        ba(row, col) += s(6 + row, col);
+      }
+  }
+  if (std::all_of(ab.data(), ab.data() + 36, [](double entry) { return entry == 0.0; })) return;
+  for (int i = 0; i < 36; ++i) {
+    ab.data()[i] *= -x.scale;
+    ba.data()[i] *= -x.scale;
+  }
+  BlockSink sink(*x.c.coupling);
+  MarkerKinematics<double> const &a = data.markers[std::size_t(at[0])], &b = data.markers[std::size_t(at[1])];
+  add_pulled_pair(a, b, ab.data(), 6, data.scratch, sink);
+  add_pulled_pair(b, a, ba.data(), 6, data.scratch, sink);
+}
+
 /// Adds to `to[k]` the stiffness of marker k of a pair with respect to the motion of this marker, without x.scale. If
 /// `c.surrogate_friction` is true, the law's approximate `own_stiffness` replaces the exact stiffness. With `c.full`,
-/// −scale · w of the wrenches w is also added to data.loads. With `c.coupling`, the block that couples both markers is
-/// added to it, if the law provides this block.
+/// −scale · w of the wrenches w is also added to data.loads. With `c.coupling`, `add_pair_stiffness` replaces both, if
+/// the law has a stiffness of the pair.
 template <class L>
 void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
                        std::array<Mat<double, 6, 6>*, 2> const& to) {
   auto const frames = frames_at(at, data);
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
-  if constexpr (requires(Mat<double, 6, 6>& k) { law.own_stiffness(frames, 1.0, 1.0, k, k, &k); })
-    if (x.c.surrogate_friction && x.c.coupling) {
-      Mat<double, 6, 6> between;
-      std::fill_n(between.data(), 36, 0.0);
-      law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1], &between);
-      if (std::all_of(between.data(), between.data() + 36, [](double entry) { return entry == 0.0; })) return;
-      for (int i = 0; i < 36; ++i) between.data()[i] *= -x.scale;
-      BlockSink sink(*x.c.coupling);
-      return add_pulled_pair(data.markers[std::size_t(at[0])], data.markers[std::size_t(at[1])], between.data(), 6,
-                             data.scratch, sink);
-    }
+  if constexpr (HasPairStiffness<L>)
+    if (x.c.coupling) return add_pair_stiffness(law, at, x, data, to);
   if constexpr (HasOwnStiffness<L>)
     if (x.c.surrogate_friction) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
   Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);

@@ -28,8 +28,8 @@ struct TangentCoefficients {
   bool exact = false;
   /// Pairs of force groups with blocks between their two markers (system/active_contact_pairs.hpp); null: all pairs.
   ActiveContactPairs* pairs = nullptr;
-  /// Receives the blocks between the two bodies of each contact of a contact set, if `surrogate_friction` is true
-  /// (system/contact_coupling.hpp); null: these blocks are not evaluated.
+  /// Receives the blocks between the two bodies of each contact of a contact set (system/contact_coupling.hpp); null:
+  /// these blocks are not evaluated.
   ContactCoupling* coupling = nullptr;
   double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, with the first-order states z
 };

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// State of a model: coordinates, velocities, accelerations, multipliers, time and integrator history.
+
 #include <polybody/math/dual.hpp>
 #include <polybody/math/errors.hpp>
 #include <polybody/math/types.hpp>

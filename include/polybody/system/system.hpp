@@ -162,7 +162,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   c.full = second == SecondOrder::included;
   Vector const& lambda = c.full && coordinates_ ? full_multipliers(given) : given;
   if (c.full) clear_loads();
-  if (c.coupling) c.coupling->clear();
+  if (c.coupling) c.coupling->begin();
   operations_->element_tangents(at(), c, data_, sink);
   write_rows(data_, layout_.velocities, sink);
   operations_->compliant_tangents(c, data_, sink);
