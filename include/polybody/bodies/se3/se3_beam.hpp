@@ -83,9 +83,8 @@ class Se3Beam : public FrameChain {
   }
 
   /// Mean force over an energy-conserving step, with the secants of (Γ, K) = (d − d₀)/l, d = (Xᵀ ρ, φ).
-  template <class T = double>  // compiled only if used
+  template <class T, class S = Secant<12>>  // compiled only if used
   void discrete_force(Index e, FrameStep const& step, Vec<T, 12>& out) const {
-    using S = Secant<12>;
     RelativeSecant<S> const relative = relative_secant<S>(step, e);
     Vec<S, 3> const p = transposed_product<S>(right_jacobian_inverse<S>(relative.phi), relative.chord);
     ScrewVector<double> const& d0 = free_[std::size_t(e)];

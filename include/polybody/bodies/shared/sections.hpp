@@ -34,9 +34,9 @@ struct AxisSlopes {
 };
 
 /// Distances (y, z) of the point p from the axis [m]; zero if points of its type have no such distance.
-template <class P>
-Vec2 off_axis(P const& p) {
-  Vec2 x = Vec2::Zero();
+template <class P, class T = double>  // compiled only if used
+Vec<T, 2> off_axis(P const& p) {
+  Vec<T, 2> x(0.0, 0.0);
   if constexpr (requires { p.y; }) x[0] = p.y;
   if constexpr (requires { p.z; }) x[1] = p.z;
   return x;
