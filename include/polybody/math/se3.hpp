@@ -188,16 +188,32 @@ inline constexpr auto cotangent_series = [] {
   return c;
 }();
 
-/// Polynomial of the first `terms` coefficients of `cotangent_series` with its derivatives, as (e, e′, e″/2).
+/// Series c_k of g = (θ/2)/sin(θ/2) = Σ c_k xᵏ, the inverse of Σ s_k xᵏ, s_k = (−¼)ᵏ/(2k + 1)!.
+inline constexpr auto inverse_sine_series = [] {
+  std::array<double, 20> c{1.0}, s{1.0};
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    s[k] = -s[k - 1] / (8.0 * double(k) * (2.0 * double(k) + 1.0));
+    for (std::size_t i = 1; i <= k; ++i) c[k] -= s[i] * c[k - i];
+  }
+  return c;
+}();
+
+/// Polynomial p of the first `terms` coefficients of `series` with its derivatives, as (p, p′, p″/2).
 template <int terms, class T>
-std::array<T, 3> cotangent_polynomial(T const& x) {
-  std::array<T, 3> p{T(cotangent_series[terms - 1]), T(0.0), T(0.0)};
+std::array<T, 3> polynomial(std::array<double, 20> const& series, T const& x) {
+  std::array<T, 3> p{T(series[terms - 1]), T(0.0), T(0.0)};
+#pragma GCC unroll 8
   for (int k = terms - 2; k >= 0; --k) {
     p[2] = p[1] + x * p[2];
     p[1] = p[0] + x * p[1];
-    p[0] = cotangent_series[std::size_t(k)] + x * p[0];
+    p[0] = series[std::size_t(k)] + x * p[0];
   }
   return p;
+}
+/// As `polynomial`, with as many terms as round-off requires for 0 ≤ x < 4.
+template <class T>
+std::array<T, 3> polynomial_below_4(std::array<double, 20> const& series, T const& x) {
+  return value_of(x) < 0.04 ? polynomial<8, T>(series, x) : polynomial<20, T>(series, x);
 }
 
 }  // namespace detail
@@ -220,7 +236,7 @@ template <class T>
 OperatorSeries<T> tangent_inverse_series(T const& x) {
   T e, de, dde;
   if (value_of(x) < 4.0) {
-    auto const p = value_of(x) < 0.04 ? detail::cotangent_polynomial<8, T>(x) : detail::cotangent_polynomial<20, T>(x);
+    auto const p = detail::polynomial_below_4<T>(detail::cotangent_series, x);
     e = p[0];
     de = p[1];
     dde = 2.0 * p[2];

@@ -3,6 +3,7 @@
 /// Derivatives of the wrenches of a force element, or of one pair of a force group, as blocks of the tangent.
 /// Theory: Eqs. 3.3, 9.8, 9.44.
 
+#include <polybody/forces/contact_tangent.hpp>
 #include <polybody/forces/reaction_force.hpp>
 #include <polybody/system/contact_coupling.hpp>
 #include <polybody/system/joint_kernels.hpp>

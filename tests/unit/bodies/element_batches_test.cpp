@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/bodies/lrvf/planar_lrvf.hpp>
-#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 #include <vector>
 
 using namespace polybody;
@@ -13,14 +13,14 @@ namespace element_batches_test {
 
 static_assert(IdenticalElements<planar::AncfCable<>> &&
               IdenticalElements<planar::AncfCable<planar::EngineeringStrain>>);
-static_assert(!IdenticalElements<planar::Lrvf> && !IdenticalElements<Rigid<>>);
+static_assert(IdenticalElements<planar::Lrvf> && IdenticalElements<planar::Se3Beam> && !IdenticalElements<Lrvf<>>);
 
 template <class B>
 struct Swaying {
   B body;
   std::vector<double> q, v, a;
 
-  explicit Swaying(Index elements)
+  explicit Swaying(Index elements, double sway = 0.01)
       : body(B::from({.length = 1.2,
                       .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0, .GA = 300},
                       .damping = {.axial = 0.1, .bending = 0.2}},
@@ -30,7 +30,7 @@ struct Swaying {
         a(q.size()) {
     body.reference(q);
     for (std::size_t i = 0; i < q.size(); ++i) {
-      q[i] += 0.01 * std::sin(3.0 * double(i));
+      q[i] += sway * std::sin(3.0 * double(i));
       v[i] = std::cos(2.0 * double(i));
       a[i] = std::sin(5.0 * double(i));
     }
@@ -43,14 +43,16 @@ struct Swaying {
 
 template <class B>
 struct ElementBatches : testing::Test {};
-using Bodies_ = testing::Types<planar::AncfCable<>, planar::AncfCable<planar::EngineeringStrain>, planar::Lrvf>;
+using Bodies_ =
+    testing::Types<planar::AncfCable<>, planar::AncfCable<planar::EngineeringStrain>, planar::Lrvf, planar::Se3Beam>;
 TYPED_TEST_SUITE(ElementBatches, Bodies_);
 
-// SIMD vectors of elements and the remaining elements give the results of single elements, in order.
+// SIMD vectors of elements and the remaining elements give the results of single elements, in order, for small and
+// large relative rotations of the nodes.
 TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   constexpr int n = TypeParam::element_columns;
-  for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11}) {
-    Swaying<TypeParam> const s(elements);
+  for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11, 24}) {
+    Swaying<TypeParam> const s(elements, elements == 24 ? 1.8 : 0.01);
     Index next = 0;
     for_each_residual<TypeParam, double>(s.body, {0, elements}, {s.qs(), s.vs(), s.as()},
                                          [&](Index e, Vec<double, n> const& x) {

@@ -26,6 +26,7 @@ struct CoupledLine : ElasticLine {
 
   /// Strains (Γ, K), with p = (r₀′, r_y, r_z, r_y′, r_z′).
   struct Line {
+    using Section = ElasticLine::Section;
     static constexpr int points = 3;
     static constexpr int components = 3;
     static constexpr int parameters = 15;
@@ -117,26 +118,22 @@ struct CoupledLine : ElasticLine {
   }
 
   /// Strain groups of an element with the reference `ref`.
-  template <class Made = Groups>  // compiled only if used
+  template <class Made = Groups, class Law = Line>  // compiled only if used
   static Made make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
-    Vec6 initial = Vec6::Zero();
+    auto const none = detail::zeros<Vec<double, Law::strains>>();
+    auto initial = none;
     initial[0] = bar.pretension;
     std::tuple_element_t<0, Made> line(initial);
-    for (int g = 0; g < Line::points; ++g) {
+    for (int g = 0; g < Law::points; ++g) {
       double const xi = gauss<3>[std::size_t(g)].xi;
       detail::CentredSection const section = detail::section_at(bar, ref.start + xi * ref.l, name);
-      Vec6 free = Vec6::Zero();
-      if (!ref.straight) {
-        Vec3 const gamma = StrainGroup<Stretch>::strains(xi, ref.l, ref.x),
-                   kappa = StrainGroup<Bend>::strains(xi, ref.l, ref.x);
-        free << gamma, kappa;
-      }
-      line.set_point(g, gauss<3>[std::size_t(g)].weight * ref.l, Line::map(xi, ref.l), free);
+      line.set_point(g, gauss<3>[std::size_t(g)].weight * ref.l, Law::map(xi, ref.l),
+                     ref.straight ? none : StrainGroup<Law>::strains(xi, ref.l, ref.x));
       line.set_matrices(g, detail::about_axis(section.stiffness, section),
                         detail::about_axis(section.damping, section));
     }
     std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};
-    return {line, on_axis<Section>(nodes, bar, c, ref, Vec3(0.0, 0.0, 0.0))};
+    return {line, on_axis<typename Law::Section>(nodes, bar, c, ref, Vec3(0.0, 0.0, 0.0))};
   }
 
   /// Section forces C (Γ, K) about the axis for the `strains` at the arc length s, plus the pretension.
@@ -144,7 +141,7 @@ struct CoupledLine : ElasticLine {
   static Vec6 section_forces(Bar const& bar, Made const&, double s, Vec6 const& strains) {
     detail::CentredSection const section = detail::section_at(bar, s, name);
     Mat<double, 6, 6> const c = detail::about_axis(section.stiffness, section);
-    Vec6 n = Vec6::Zero();
+    auto n = detail::zeros<Vec6>();
     n[0] = bar.pretension;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) n[i] += c(i, j) * strains[j];

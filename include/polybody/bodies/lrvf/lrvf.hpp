@@ -93,7 +93,7 @@ class Lrvf : public FrameChain {
 
   /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The tangent is not symmetric in general, because rotations do
   /// not commute.
-  template <class T>  // compiled only if used
+  template <class T, class S = Secant<12>>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     elastic_.template tangent<T>(e, q, v, ck, cd, k);
@@ -105,11 +105,10 @@ class Lrvf : public FrameChain {
     requires SecantInterpolation<Interpolation>
   void discrete_force(Index e, FrameStep const& step, Vec<T, 12>& out) const {
     set_mean_gyroscopic(e, step, out);
-    RelativeSecant<Secant<12>> const x = relative_secant<Secant<12>>(step, e);
-    elastic_.template for_each_strain<Secant<12>>(
-        e, x, [&](LrvfSection const& section, Vec<Secant<12>, 6> const& strains) {
-          subtract_stress(strains, section.mean_forces(strains, step.means()), out);
-        });
+    RelativeSecant<S> const x = relative_secant<S>(step, e);
+    elastic_.template for_each_strain<S>(e, x, [&](LrvfSection const& section, Vec<S, 6> const& strains) {
+      subtract_stress(strains, section.mean_forces(strains, step.means()), out);
+    });
   }
   /// Tangent s K̄ of `discrete_force`: that of the state in the middle of the step, with the coordinates `q` and `zero`
   /// velocities.

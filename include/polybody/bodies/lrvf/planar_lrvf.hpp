@@ -14,9 +14,9 @@ namespace polybody::planar {
 /// (strain_quadrature.hpp has other quadratures):
 ///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ).
 struct SimoVuQuoc {
-  static constexpr char const* name = "planar::Lrvf";            ///< name of the body type in messages
-  static constexpr int node_columns = 3;                         ///< (x, y, θ)
-  static constexpr bool vectorised_kernels = false;              ///< one sine and one cosine take most of the time
+  static constexpr char const* name = "planar::Lrvf";  ///< name of the body type in messages
+  static constexpr int node_columns = 3;               ///< (x, y, θ)
+  static constexpr bool vectorised_kernels = true;
   static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< rows of ε, γ and κ
   static constexpr int gradients = 0;  ///< number of position gradients that are linear in the coordinates
 

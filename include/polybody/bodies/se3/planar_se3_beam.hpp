@@ -22,17 +22,40 @@ struct CircularArc : SimoVuQuoc {
     require_positive(c.GA, "planar::Se3Beam: the shear stiffness GA of the bar");
   }
 
-  /// Function g = 1/s₁(φ²/4), s₁(x) = sin √x/√x, and its derivatives with respect to φ.
+  /// Function g of φ and its derivatives. From φ = 2 rad on, with s = sin(φ/2) and c = cot(φ/2),
+  ///   g′ = (1 − φ c/2)/(2s),  g″ = (φ/4 + (φ c/2 − 1) c)/(2s).
   template <class T>
   struct Growth {
     T g, dg, ddg;                    ///< g without unit, g′ [1/rad], g″ [1/rad²]
     explicit Growth(T const& phi) {  ///< at the angle φ [rad]
-      detail::SineSeries<T> const s(0.25 * phi * phi);
-      T const by_x = -(s.slope(1) / (s[1] * s[1]));
-      T const by_xx = 2.0 * s.slope(1) * s.slope(1) / (s[1] * s[1] * s[1]) - s.second(1) / (s[1] * s[1]);
-      g = 1.0 / s[1];
-      dg = 0.5 * phi * by_x;
-      ddg = 0.25 * phi * phi * by_xx + 0.5 * by_x;
+      using std::cos, std::sin;
+      T const x = phi * phi;
+      if constexpr (!requires { value_of(x); }) {  // SIMD vector
+        bool small = true;
+        for (int i = 0; i < T::size; ++i) small = small && x[i] < 0.04;
+        if (small) set(phi, detail::polynomial<8, T>(detail::inverse_sine_series, x));
+        for (int i = 0; i < T::size && !small; ++i) {
+          Growth<double> const one(phi[i]);
+          g.set(i, one.g);
+          dg.set(i, one.dg);
+          ddg.set(i, one.ddg);
+        }
+      } else if (value_of(x) < 4.0) {
+        set(phi, detail::polynomial_below_4<T>(detail::inverse_sine_series, x));
+      } else {
+        T const s = sin(0.5 * phi), c = cos(0.5 * phi) / s;
+        g = 0.5 * phi / s;
+        dg = (0.5 - 0.25 * phi * c) / s;
+        ddg = (0.125 * phi + (0.25 * phi * c - 0.5) * c) / s;
+      }
+    }
+
+   private:
+    /// Sets g and its derivatives from those of g(x), x = φ², as (g, dg/dx, ½ d²g/dx²).
+    void set(T const& phi, std::array<T, 3> const& by_x) {
+      g = by_x[0];
+      dg = 2.0 * phi * by_x[1];
+      ddg = 2.0 * by_x[1] + 8.0 * phi * phi * by_x[2];
     }
   };
 

@@ -4,6 +4,7 @@
 /// once in SIMD vectors (structure of arrays). The remaining elements, and the elements of other bodies, are processed
 /// one by one.
 
+#include <algorithm>
 #include <array>
 
 #include <polybody/bodies/shared/body.hpp>
@@ -18,7 +19,7 @@ template <class B>
 concept IdenticalElements =
     requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
              Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
-      requires B::vectorised_kernels;                     // false for kernels with sines: no gain from SIMD
+      requires B::vectorised_kernels;                     // false for kernels that branch on values
       { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
       b.template element_inertia<SimdVector<>>(x, out);
       b.template element_force<SimdVector<>>(x, x, out);
@@ -59,31 +60,37 @@ struct SimdMotion {
   SimdPointers q, v, a;
 };
 
+/// Calls f(k) for parts of `simd_size` numbers, k to k + simd_size − 1, that cover n numbers. The last two parts
+/// overlap unless n is a multiple of `simd_size`.
+template <int n, class F>
+void for_each_part(F&& f) {
+  static_assert(n >= simd_size);
+  for (int k = 0; k < n; k += simd_size) f(std::min(k, n - simd_size));
+}
+
 /// Combines n numbers of each of `simd_size` elements into n SIMD vectors.
 template <int n>
 Vec<SimdVector<>, n> side_by_side(SimdPointers const& x) {
-  static_assert(n % simd_size == 0);
   Vec<SimdVector<>, n> packed;
   std::array<SimdVector<>, simd_size> part;
-  for (int k = 0; k < n; k += simd_size) {
+  for_each_part<n>([&](int k) {
     for (int l = 0; l < simd_size; ++l) part[std::size_t(l)] = SimdVector<>::load(x[std::size_t(l)] + k);
     transpose(part);
     for (int l = 0; l < simd_size; ++l) packed[k + l] = part[std::size_t(l)];
-  }
+  });
   return packed;
 }
 /// Inverse of `side_by_side`: sets `each[l]`, the vector or matrix of element l, to the numbers of this element plus
 /// `same`.
 template <class Packed, class Each>
 void take_apart(Packed const& packed, Each const& same, std::array<Each, simd_size>& each) {
-  static_assert(Packed::SizeAtCompileTime % simd_size == 0);
   std::array<SimdVector<>, simd_size> part;
-  for (int k = 0; k < Packed::SizeAtCompileTime; k += simd_size) {
+  for_each_part<Packed::SizeAtCompileTime>([&](int k) {
     for (int l = 0; l < simd_size; ++l) part[std::size_t(l)] = packed.data()[k + l];
     transpose(part);
     SimdVector<> const base = SimdVector<>::load(same.data() + k);
     for (int l = 0; l < simd_size; ++l) (part[std::size_t(l)] + base).store(each[std::size_t(l)].data() + k);
-  }
+  });
 }
 
 /// Returns true if all elements differ only in their coordinates.

@@ -26,9 +26,9 @@ namespace polybody {
 ///   D (ε˙, …, κ˙_z),  D_ij = √τ_i C_ij √τ_j,
 /// so that D is symmetric and positive semidefinite.
 struct Section6 {
-  Mat<double, 6, 6> stiffness = Mat<double, 6, 6>::Zero();  ///< (6×6) stiffness [N], [N m], [N m²]
-  Mat<double, 6, 6> mass = Mat<double, 6, 6>::Zero();       ///< (6×6) mass per length [kg/m], [kg], [kg m]
-  Vec6 damping_times = Vec6::Zero();                        ///< τ of each strain [s]; added to those of the bar
+  Mat<double, 6, 6> stiffness = detail::zeros<Mat<double, 6, 6>>();  ///< (6×6) stiffness [N], [N m], [N m²]
+  Mat<double, 6, 6> mass = detail::zeros<Mat<double, 6, 6>>();       ///< (6×6) mass per length [kg/m], [kg], [kg m]
+  Vec6 damping_times = Vec6::Zero();  ///< τ of each strain [s]; added to those of the bar
 
   /// Returns this section for each arc length.
   Section6 const& operator()(double) const { return *this; }
@@ -121,11 +121,12 @@ template <class = void>  // compiled only if used
 
 /// Section about its centre of mass. Stiffness and damping are those of the strains of the line of centres.
 struct CentredSection {
-  double mass = 0.0;                                        ///< per length [kg/m]
-  Vec3 centre = Vec3::Zero();                               ///< centre of mass (0, y, z) [m]
-  Mat3 inertia = Mat3::Zero();                              ///< about the centre of mass, per length [kg m]
-  Mat<double, 6, 6> stiffness = Mat<double, 6, 6>::Zero();  ///< [N], [N m], [N m²]
-  Mat<double, 6, 6> damping = Mat<double, 6, 6>::Zero();    ///< stiffness times damping times [N s], [N m s], [N m² s]
+  double mass = 0.0;                                                 ///< per length [kg/m]
+  Vec3 centre = Vec3::Zero();                                        ///< centre of mass (0, y, z) [m]
+  Mat3 inertia = Mat3::Zero();                                       ///< about the centre of mass, per length [kg m]
+  Mat<double, 6, 6> stiffness = detail::zeros<Mat<double, 6, 6>>();  ///< [N], [N m], [N m²]
+  Mat<double, 6, 6> damping =
+      detail::zeros<Mat<double, 6, 6>>();  ///< stiffness times damping times [N s], [N m s], [N m² s]
 };
 
 /// Centre and inertia of the mass matrix of a section.
