@@ -2,11 +2,12 @@
 
   programs.py names PAGE...            folder/page:name of each, one per line. A program is the block after
                                        <!-- program: NAME -->; blocks after <!-- more: NAME --> continue it. A block has at most
-                                       60 lines, in docs/howto 30, in docs/items 25
+                                       60 lines, in docs/howto 30, in docs/items 25. A program includes the standard
+                                       header of each name of std that it uses
   programs.py write PAGE NAME FILE     writes one of them
   programs.py check PAGE NAME PROGRAM  runs it and compares its output with the block after <!-- output: NAME -->: words
                                        exactly, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
-  programs.py self                     tests of `check`: differences that it reports and accepts
+  programs.py self                     tests of `check`: differences that it reports and accepts; tests of missing headers
   programs.py lines PAGE TESTS         compares counts of the page, such as 32<!--lines: car_test, by hand + of both-->, with the
                                        numbers of lines in TESTS/car_test.cpp between "// --- code by hand" or "// --- code
                                        of both" and "// --- end", without comments and blank lines
@@ -21,7 +22,33 @@ from pathlib import Path
 
 MAX_LINES = {"guide": 60, "items": 25, "lessons": 60, "howto": 30}  # of a block, by folder
 BLOCK = re.compile(r"<!-- (program|more|output): (\w+) -->\n```(?:cpp|text)\n(.*?)```", re.S)
+HEADERS = {  # names of std; those of "" are in every header of containers
+    "": "move ptrdiff_t size_t",
+    "algorithm": "clamp copy fill max max_element min min_element ranges sort",
+    "array": "array",
+    "cmath": "abs acos asin atan atan2 cbrt ceil cos cosh exp floor hypot isfinite isnan log log10 log1p pow round sin sinh sqrt tan tanh",
+    "concepts": "same_as",
+    "cstdio": "fprintf printf puts snprintf",
+    "filesystem": "filesystem",
+    "fstream": "ifstream ofstream",
+    "functional": "function",
+    "iostream": "cerr cout",
+    "numbers": "numbers",
+    "optional": "nullopt optional",
+    "span": "span",
+    "string": "string to_string",
+    "tuple": "tuple",
+    "type_traits": "conditional_t decay_t remove_cvref_t",
+    "vector": "vector",
+}
+HEADER_OF = {name: header for header, names in HEADERS.items() for name in names.split()}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def missing_headers(code):
+    """Standard headers of the names in the program that it does not include; "?" for names that HEADERS does not list."""
+    needed = {HEADER_OF.get(name, f"? (std::{name})") for name in re.findall(r"\bstd::(\w+)", code)}
+    return sorted(needed - {""} - set(re.findall(r"^#include <(\w+)>", code, re.M)))
 
 
 def blocks(page):
@@ -42,6 +69,9 @@ def blocks(page):
         found[kind][name] = content
     if set(found["program"]) != set(found["output"]):
         sys.exit(f"{page}: programs and outputs differ: {sorted(set(found['program']) ^ set(found['output']))}.")
+    for name, code in found["program"].items():
+        if missing := missing_headers(code):
+            sys.exit(f"{page}: {name} does not include <{'>, <'.join(missing)}>.")
     fences = len(re.findall(r"^```cpp$", text, re.M))
     if fences != len(found["program"]) + continued:
         sys.exit(f"{page}: {fences} blocks of C++, but {len(found['program']) + continued} are programs or continue one.")
@@ -78,6 +108,9 @@ def check_self():
     for shown, printed in fails:
         if not difference(shown, printed):
             sys.exit(f"not found: {shown!r}, {printed!r}")
+    code = "#include <cmath>\nstd::sin(std::max(x, 1.0)); std::numbers::pi; std::size_t n; std::unknown(n);\n"
+    if missing_headers(code) != ["? (std::unknown)", "algorithm", "numbers"]:
+        sys.exit(f"headers: {missing_headers(code)}")
     code = "// --- code by hand\na\n\n// b\n  // --- end\nc\n// --- code of both\nd\n// --- end\n// --- code by hand\ne\nf\n// --- end\n"
     if lines_of_code(code) != {"by hand": 3, "of both": 1}:
         sys.exit(f"lines: {lines_of_code(code)}")
