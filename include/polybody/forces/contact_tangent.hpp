@@ -53,9 +53,13 @@ struct SlipTangent {
 /// Receives the stiffness of a pair with respect to the twists of both markers: blocks of markers a and b, and the
 /// blocks in rows of a and columns of b, and in rows of b and columns of a, without their negative sign.
 struct PairStiffness {
-  Mat<double, 6, 6>&a, &b, &ab, &ba;  ///< (6×6) sums of JᵀK J
+  Mat<double, 6, 6>& a;   ///< (6×6) sum of JᵀK J of marker a
+  Mat<double, 6, 6>& b;   ///< (6×6) sum of JᵀK J of marker b
+  Mat<double, 6, 6>& ab;  ///< (6×6) sum of JᵀK J in rows of a and columns of b
+  Mat<double, 6, 6>& ba;  ///< (6×6) sum of JᵀK J in rows of b and columns of a
 
-  /// Adds the contributions of the matrix K at a contact point with the arms a and b (3) [m].
+  /// Adds the contributions of the matrix `k` (3×3) at a contact point with the arms `arm_a` and `arm_b` (3) [m] of the
+  /// markers.
   void add(Mat3 const& k, Vec3 const& arm_a, Vec3 const& arm_b) const {
     add(k, arm_a, arm_a, a);
     add(k, arm_b, arm_b, b);

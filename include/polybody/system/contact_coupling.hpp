@@ -15,8 +15,10 @@ namespace polybody {
 
 /// Number of a contact point: indices of its two markers, and its slot (`ContactPoint`).
 struct ContactPointKey {
-  Index a, b;
-  int slot;
+  Index a;   ///< index of the first marker
+  Index b;   ///< index of the second marker
+  int slot;  ///< slot of the point
+  /// Order by markers, then by slot.
   auto operator<=>(ContactPointKey const&) const = default;
 };
 
@@ -61,8 +63,9 @@ class FrictionRatios {
  private:
   struct Point {
     ContactPointKey key;
-    Vec3 v, w;
-    double s;
+    Vec3 v;    ///< (3) slip velocity [m/s]
+    Vec3 w;    ///< (3) friction ratio [1]
+    double s;  ///< √(v² + v_s²) [m/s]
   };
 
   static Vec3 predicted(Point const& p, Vec3 const& v) {
