@@ -93,7 +93,7 @@ class Lrvf : public FrameChain {
 
   /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The tangent is not symmetric in general, because rotations do
   /// not commute.
-  template <class T, class S = Secant<12>>  // compiled only if used
+  template <class T>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     elastic_.template tangent<T>(e, q, v, ck, cd, k);
@@ -101,7 +101,7 @@ class Lrvf : public FrameChain {
   }
 
   /// Mean force over an energy-conserving step.
-  template <class T = double>  // compiled only if used
+  template <class T = double, class S = Secant<12>>  // compiled only if used
     requires SecantInterpolation<Interpolation>
   void discrete_force(Index e, FrameStep const& step, Vec<T, 12>& out) const {
     set_mean_gyroscopic(e, step, out);
