@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <polybody/polybody.hpp>
+#include <polybody/se3_beam.hpp>
 
 namespace {
 
@@ -137,11 +138,13 @@ int main(int argc, char** argv) {
   std::printf("\nnanoseconds an element, packs of %d\n", simd_size);
   compare<Green>("planar AncfCable, Green strain");
   compare<Engineering>("planar AncfCable, engineering strain");
-  compare<planar::Lrvf>("planar Lrvf (does not use packs)");
+  compare<planar::Lrvf>("planar Lrvf");
+  compare<planar::Se3Beam>("planar Se3Beam");
   compare<AncfCable<>>("AncfCable in space");
   compare<AncfBeam<ElasticLine>>("AncfBeam<ElasticLine>");
   compare<AncfBeam<Continuum<>>>("AncfBeam<Continuum>");
   Damping const damping{.axial = 1e-4, .shear = 2e-4, .bending = 3e-4};
+  compare<planar::Lrvf>("planar Lrvf, damped", damping);
   compare<AncfCable<>>("AncfCable in space, damped", damping);
   compare<AncfBeam<ElasticLine>>("AncfBeam<ElasticLine>, damped", damping);
   compare<AncfBeam<Continuum<>>>("AncfBeam<Continuum>, damped", damping);
