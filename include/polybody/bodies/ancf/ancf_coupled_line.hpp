@@ -120,18 +120,17 @@ struct CoupledLine : ElasticLine {
   /// Strain groups of an element with the reference `ref`.
   template <class Made = Groups, class Law = Line>  // compiled only if used
   static Made make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
-    auto const none = detail::zeros<Vec<double, Law::strains>>();
-    auto initial = none;
+    auto initial = detail::zeros<Vec<double, Law::strains>>();
     initial[0] = bar.pretension;
     std::tuple_element_t<0, Made> line(initial);
     for (int g = 0; g < Law::points; ++g) {
       double const xi = gauss<3>[std::size_t(g)].xi;
       detail::CentredSection const section = detail::section_at(bar, ref.start + xi * ref.l, name);
-      line.set_point(g, gauss<3>[std::size_t(g)].weight * ref.l, Law::map(xi, ref.l),
-                     ref.straight ? none : StrainGroup<Law>::strains(xi, ref.l, ref.x));
+      line.set_point(g, gauss<3>[std::size_t(g)].weight * ref.l, Law::map(xi, ref.l));
       line.set_matrices(g, detail::about_axis(section.stiffness, section),
                         detail::about_axis(section.damping, section));
     }
+    if (!ref.straight) line.set_free(ref.x);
     std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};
     return {line, on_axis<typename Law::Section>(nodes, bar, c, ref, Vec3(0.0, 0.0, 0.0))};
   }
