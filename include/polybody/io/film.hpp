@@ -40,7 +40,10 @@ inline constexpr std::string_view film_magic = "pbfilm01";
 template <class List, class Item>
 std::string json_list(List const& list, Item const& item) {
   std::string text = "[";
-  for (std::size_t i = 0; i < list.size(); ++i) text += (i ? "," : "") + item(list[i]);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    text += i ? "," : "";
+    text += item(list[i]);
+  }
   return text + ']';
 }
 
@@ -114,8 +117,10 @@ class SceneContents {
       text += ",\"step\":" + all_digits(q.step);
     }
     text += ",\"scalars\":[";
-    for (std::size_t k = 0; k < ranges_.size(); ++k)
-      text += (k ? "," : "") + (p.scalars[k].empty() ? "null" : arrays_.add(ranges_[k].integers(p.scalars[k])));
+    for (std::size_t k = 0; k < ranges_.size(); ++k) {
+      text += k ? "," : "";
+      text += p.scalars[k].empty() ? "null" : arrays_.add(ranges_[k].integers(p.scalars[k]));
+    }
     return text + "]}";
   }
 

@@ -60,8 +60,7 @@ struct DampedStep {
 /// motion of negative stiffness is found.
 template <class Solver>
 [[gnu::cold]] bool leaves_saddle(EquilibriumPath<Solver>& path) {
-  path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
-  Stability const found = stability(path.system, path.tangent, path.trial.lambda);
+  Stability const found = stability(path.system, path.tangent, path.trial, 10.0 * path.tolerance);
   if (found.negative <= 0) return false;
   path.dq = (1e-3 * (1.0 + largest_size(path.trial.q)) / largest_size(found.motion)) * found.motion;
   path.system.plus(path.trial.q, path.dq, path.q);
@@ -90,7 +89,7 @@ template <class Solver>
   step.weights = step.weights.cwiseMax(1e-9 * heaviest);
   double share = 0.0, part = 0.05;
   step.mu = path.tangent.next_unit() / heaviest;
-  double const stiffest = 1e6 * step.mu;
+  double const largest_mu = step.mu, stiffest = 1e6 * step.mu;
   bool reached = false;
   int saddles = 0, failures = 0;
   NewtonOptions const few{.max_iterations = std::min(12, options.max_iterations), .always_refactor = true};
@@ -114,11 +113,15 @@ template <class Solver>
     part = std::min(2.0 * part, 0.1);
     if (share < 1.0 || !(largest_size(step.moved) <= 1e-3 * (1.0 + largest_size(path.trial.q)))) continue;
     State const near = path.trial;
+    double const size = 1.0 + largest_size(near.q);
+    // Free motions about the equilibrium make the tangent singular. Small steps of the damped motion then end it.
+    reached = step.mu < 1e-12 * largest_mu && largest_size(step.moved) <= options.tolerance * size;
+    if (reached) break;
     path.tangent.remove_springs(path.trial.lambda);
-    reached = correct(path, options, report) == NewtonResult::converged &&
-              largest_size(path.trial.q - near.q) <= 0.05 * (1.0 + largest_size(near.q));
+    NewtonResult const end = correct(path, options, report);
+    reached = end == NewtonResult::converged && largest_size(path.trial.q - near.q) <= 0.05 * size;
     if (!reached) {
-      failures += 4;
+      failures += end == NewtonResult::singular ? 1 : 4;
       path.trial = near;
     } else if (saddles < 20 && leaves_saddle(path)) {
       ++saddles;
@@ -126,7 +129,7 @@ template <class Solver>
       step.mu = std::min(1e4 * step.mu, 1e-6 * stiffest);
     }
   }
-  if (!reached) path.tangent.remove_springs(path.trial.lambda);
+  path.tangent.remove_springs(path.trial.lambda);
   return report.relaxed = reached;
 }
 
@@ -136,8 +139,7 @@ template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;
   if (path.states > 0) return;
-  path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
-  Stability const found = stability(path.system, path.tangent, path.trial.lambda);
+  Stability const found = stability(path.system, path.tangent, path.trial, 10.0 * path.tolerance);
   report.negative_pivots = int(found.negative);
   if (found.negative <= 0) return;
   Index largest = 0;

@@ -14,6 +14,7 @@
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/types.hpp>
 #include <polybody/statics/static_tangent.hpp>
+#include <polybody/system/state.hpp>
 
 namespace polybody::detail {
 
@@ -280,7 +281,8 @@ class DependentCoordinates {
 /// coordinate by others,
 ///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
 /// K is symmetrised. A negative pivot is counted only if its motion x has a negative xᵀK x. The sum xᵀK x is computed
-/// in long double and must be negative beyond the round-off of its terms.
+/// in long double and must be negative beyond the round-off of its terms, and in neighbouring states too. The spin of a
+/// payload about its rope, for example, has an xᵀK x proportional to the square of the error of the state.
 struct Stability {
   Index negative = -1;  ///< number of negative eigenvalues; −1: more than `most_entries` or `most_terms`
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none
@@ -298,12 +300,17 @@ bool is_negative(StaticEntries const& entries, VecX const& x) {
   return sum < -1e-15L * terms;
 }
 
-/// Stability at the state of the last evaluation of `system`, with the multipliers `lambda`.
+/// Stability in the state x with x.v = 0, up to changes of the coordinates by `error`, relative to 1 + max |q|.
 template <LinearSolver Solver>
-Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX const& lambda) {
+Stability stability(System& system, StaticTangent<Solver>& tangent, State const& x, double error) {
   Stability out;
-  StaticEntries entries{system.velocities()};
-  tangent.write_scaled(lambda, entries);
+  auto const entries_at = [&](VecX const& q) {
+    system.evaluate(q, x.v, x.t);
+    StaticEntries entries{system.velocities()};
+    tangent.write_scaled(x.lambda, entries);
+    return entries;
+  };
+  StaticEntries const entries = entries_at(x.q);
   DependentCoordinates dependent;
   if (!dependent.find(entries, system.rows())) return out;
   Sequence<int> place(std::size_t(system.velocities()), -1);
@@ -330,13 +337,24 @@ Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX c
   r.setFromTriplets(reduced.begin(), reduced.end());
   SymmetricPivots pivots;
   if (!pivots.factor(r)) return {};
+  Sequence<StaticEntries> near;  // in two states on opposite sides of x
   for (Index const k : pivots.negative()) {
     VecX const z = pivots.direction(k);
-    VecX x = VecX::Zero(system.velocities());
-    for (std::size_t i = 0; i < place.size(); ++i) each(int(i), [&](int j, double a) { x[Index(i)] += a * z[j]; });
-    if (!is_negative<>(entries, x)) continue;
-    if (out.negative++ == 0) out.motion = std::move(x);
+    VecX motion = VecX::Zero(system.velocities());
+    for (std::size_t i = 0; i < place.size(); ++i) each(int(i), [&](int j, double a) { motion[Index(i)] += a * z[j]; });
+    if (!is_negative<>(entries, motion)) continue;
+    VecX change = motion, q = x.q;
+    for (double sign : {1.0, -1.0}) {
+      if (near.size() == 2) break;
+      tangent.fill_without_order(0, change);
+      change *= sign * error * (1.0 + largest_size(x.q));
+      system.plus(x.q, change, q);
+      near.push_back(entries_at(q));
+    }
+    if (!(is_negative<>(near[0], motion) && is_negative<>(near[1], motion))) continue;
+    if (out.negative++ == 0) out.motion = std::move(motion);
   }
+  if (!near.empty()) system.evaluate(x.q, x.v, x.t);
   return out;
 }
 

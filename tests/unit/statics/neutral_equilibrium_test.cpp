@@ -1,10 +1,14 @@
 // Equilibria with a singular stiffness: redundant constraints, and free motions without stiffness.
 #include <gtest/gtest.h>
 
+#include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/loads.hpp>
+#include <polybody/forces/scalar_force.hpp>
+#include <polybody/forces/spring_laws.hpp>
 #include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/minimum_norm.hpp>
@@ -131,6 +135,43 @@ TEST(NeutralFreedom, OfAPayloadIsItsSpin) {
         EXPECT_LT(std::abs(x.q[6]), 1e-12);
       }
     }
+}
+
+/// Deflection [m] of a boom on a mast that turns about the vertical, with a load of 500 kg on one or two ropes. \tparam
+/// B body of the boom
+template <class B>
+double sag_of_a_slewing_crane(Index elements, int ropes) {
+  using Cable = OnDistance<Rope>;
+  Model<Bodies<Rigid<>, B>, Joints<Joint<Revolute, Constraint>, Joint<Weld, Constraint>>, Forces<Cable>> model{
+      Gravity{0, 0, -9.81}};
+  auto const mast = model.add(Rigid<>(5000.0, 1000.0 * Mat3::Identity()), "mast");
+  auto const boom = model.add(B::from({.length = 8.0,
+                                       .section = Rectangle{.height = 0.1, .width = 0.12},
+                                       .material = Material{.density = 7800, .young = 2.1e11}},
+                                      elements),
+                              "boom");
+  auto const load = model.add(Rigid<>(500.0, 30.0 * Mat3::Identity(), Placement::at({8, 0, -4.3})), "load");
+  model.connect(Joint<Revolute, Constraint>{{.axis = {0, 0, 1}}}, model.ground().at({0, 0, 0}), mast.centre());
+  model.connect(Joint<Weld, Constraint>{}, mast.centre(), boom.at(0.0));
+  for (int i = 0; i < ropes; ++i) {
+    double const y = 0.1 * (i - 0.5 * (ropes - 1));
+    model.apply(Cable{{.stiffness = 1e6 / ropes, .length = 3.995}}, boom.at(8.0, y, 0.0), load.at({0, y, 0.3}));
+  }
+  State x = model.reference_state();
+  EquilibriumReport const report = equilibrium(model, x);
+  EXPECT_EQ(report.negative_pivots, 0);
+  EXPECT_TRUE(report.warnings.empty());
+  return -position(model, x, boom.at(8.0))[2];
+}
+
+// The spin of the load about one rope, and the rotation of the crane, are free: they are neither unstable nor refused.
+TEST(NeutralFreedom, OfASlewingCraneIsNotUnstable) {
+  for (Index const n : {8, 16}) {
+    double const lrvf = sag_of_a_slewing_crane<Lrvf<>>(n, 2), ancf = sag_of_a_slewing_crane<AncfBeam<>>(n, 2);
+    EXPECT_NEAR(lrvf, 0.431, 0.002);
+    EXPECT_NEAR(sag_of_a_slewing_crane<Lrvf<>>(n, 1), lrvf, 1e-6 * lrvf);
+    EXPECT_NEAR(sag_of_a_slewing_crane<AncfBeam<>>(n, 1), ancf, 1e-6 * ancf);
+  }
 }
 
 using Float = Model<Bodies<planar::Lrvf>, Joints<Joint<planar::Weld, Constraint>>, Forces<PointForce<>>>;
