@@ -1,6 +1,6 @@
 // Every type of the library satisfies its concept. The headers do not check it, so that programs compile faster.
-#include <polybody/bodies/ancf/ancf_coupled_line.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/ancf/ancf_coupled_line.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>

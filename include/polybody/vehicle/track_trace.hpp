@@ -215,11 +215,11 @@ inline int track_target(TrackLayout const& layout, int at, Vec2& heading, TrackT
     TrackSight sight;
     int by;
   };
-  double const endless = std::numeric_limits<double>::infinity();
+  double const unbounded = std::numeric_limits<double>::infinity();
   double const same = 1e-9;  // bounds with a smaller difference are equal and belong to the earlier circle
   int const count = int(layout.circles.size());
   Vec2 const pin = walk.pins.back();
-  Bound right{{heading, -endless}, count}, left{{heading, endless}, count};
+  Bound right{{heading, -unbounded}, count}, left{{heading, unbounded}, count};
   if (at < 0 && walk.last - walk.start < layout.sprocket.teeth)
     right = {track_sight(heading, (layout.seat(walk.last + 1) - pin).normalized()), -1};
 
