@@ -90,7 +90,8 @@ extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Cont
 extern template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
                                                                 detail::LinearPointOf<double> const&, Vec3 const&,
                                                                 LinearConstraints&);
-extern template void Visual::carry<void>(Index, Surface const&, std::string, FrameIn);
+extern template void Visual::carry<void>(Visual::Place, Surface const&, std::string);
+extern template void Visual::draw_line<void>(Visual::Place, Visual::Place, double, std::string const&);
 extern template std::vector<Vec2> outline<void>(Bar const&, int);
 extern template Surface swept<void>(int, int);
 extern template Surface cylinder<double>(double, double, Vec3 const&, int);

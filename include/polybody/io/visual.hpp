@@ -12,6 +12,7 @@
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/sections.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/system/make_operations.hpp>
 
@@ -114,17 +115,13 @@ template <class T = double>  // compiled where it is used
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
   require_positive(radius, "cylinder: the radius");
   require_positive(length, "cylinder: the length");
-  require_unit(axis, "cylinder: the axis");
+  Mat3 const triad = constraint_functions::triad_about(axis, "cylinder: the axis");
   std::vector<Vec2> const ring = outline(Bar{.length = length, .section = Circle{.radius = radius}}, sides);
-  int smallest = 0;
-  for (int i = 1; i < 3; ++i)
-    if (std::abs(axis[i]) < std::abs(axis[smallest])) smallest = i;
-  Vec<T, 3> const x = axis, y = x.cross(Vec<T, 3>::Unit(smallest)).normalized(), z = x.cross(y);
   Surface s = swept(2, sides);
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < sides; ++i)
       s.points[std::size_t(sides * k + i)] =
-          x * ((k - 0.5) * length) + y * ring[std::size_t(i)][0] + z * ring[std::size_t(i)][1];
+          triad * Vec3(ring[std::size_t(i)][0], ring[std::size_t(i)][1], (k - 0.5) * length);
   return s;
 }
 
@@ -156,7 +153,7 @@ Surface capsule(double radius, double length, Vec3 const& axis = Vec3::UnitX(), 
 
 /// Visible part of a model in one state: a surface, the velocities and axial stresses of its points, and a frame. The
 /// frame of a shape fixed to a marker is the frame of the marker. The frame of a swept bar is the frame at the middle
-/// of the bar.
+/// of the bar. The frame of a line is at its middle, with z along the line.
 struct VisualPart {
   std::string name;                   ///< name of the part
   Surface surface;                    ///< surface in the state, world axes
@@ -164,7 +161,7 @@ struct VisualPart {
   std::vector<Vec3> velocities = {};  ///< velocity of each point, world axes [m/s]
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
   Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
-  std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of the frame [m]; empty for a bar
+  std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of the frame [m]; empty for a bar or a line
   std::optional<World> world = {};    ///< world of the body, plane or space; empty for a part of the ground
 };
 
@@ -182,6 +179,7 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 ///   Visual visual(model);
 ///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   fixed to the marker's frame
 ///   visual.sweep(beam, bar, 20);                            the bar's section along the deformed body
+///   visual.line(boom.at(8.0), load.centre(), 0.02);         a rope
 ///   for (VisualPart const& part : visual.at(x)) ...
 /// The model must outlive this object, and must not change meanwhile.
 class Visual {
@@ -198,6 +196,13 @@ class Visual {
   /// \throws InvalidInput for a marker of another model.
   template <class B>
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
+
+  /// Adds a straight line between two markers, such as a rope or a spring, as a tube of this `radius` [m] under `name`.
+  /// \throws InvalidInput for a marker of another model, or a radius that is not positive.
+  template <class A, class B>
+  void line(Marker<A> const& a, Marker<B> const& b, double radius, std::string name = "line") {
+    draw_line(place_of(a, name), place_of(b, name), radius, name);
+  }
 
   /// Adds the surface of the bar from which the body was made, divided into `pieces` along its length. Round sections
   /// become polygons with this number of `sides`. If the body provides points outside of its axis, the points of a
@@ -229,9 +234,18 @@ class Visual {
   }
 
  private:
-  /// Adds a part whose points are fixed in the axes of a frame, to body number `body` of the layout (−1: the ground).
+  /// Frame of a marker in a state, and the number of its body in the layout (−1: the ground).
+  struct Place {
+    Index body;
+    FrameIn frame_in;
+  };
+  template <class B>
+  Place place_of(Marker<B> const& marker, std::string const& name) const;
+  /// Adds a part whose points are fixed in the axes of the frame `at`.
   template <class = void>
-  void carry(Index body, Surface const& shape, std::string name, FrameIn frame_in);
+  void carry(Place at, Surface const& shape, std::string name);
+  template <class = void>
+  void draw_line(Place a, Place b, double radius, std::string const& name);
   /// Marks the last part as a part of body number `body`.
   template <class = void>
   void show(Index body) {
@@ -249,17 +263,21 @@ class Visual {
 // Defined outside of the class: a program that links `polybody::compiled` then does not compile these functions
 // again.
 template <class B>
-void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string name) {
+Visual::Place Visual::place_of(Marker<B> const& marker, std::string const& name) const {
   if constexpr (std::is_same_v<B, Ground>) {
     require_own(layout_, marker, name);
     Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
-    carry(-1, shape, std::move(name), [f](State const&) { return f; });
+    return {-1, [f](State const&) { return f; }};
   } else {
     Index const body = index_of(layout_, marker, name);
     BodyLayout const place = layout_.bodies[std::size_t(body)];
-    carry(body, shape, std::move(name),
-          [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
+    return {body, [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); }};
   }
+}
+
+template <class B>
+void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string name) {
+  carry(place_of(marker, name), shape, std::move(name));
 }
 
 template <class B>
@@ -301,15 +319,37 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
 }
 
 template <class>
-void Visual::carry(Index body, Surface const& shape, std::string name, FrameIn frame_in) {
+void Visual::carry(Place at, Surface const& shape, std::string name) {
   parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
   parts_.back().carried = shape.points;
-  if (body >= 0) show(body);
-  moves_.push_back([frame_in = std::move(frame_in)](State const& x, VisualPart& part) {
+  if (at.body >= 0) show(at.body);
+  moves_.push_back([frame_in = std::move(at.frame_in)](State const& x, VisualPart& part) {
     Frame<double> const f = frame_in(x);
     part.place = f.r;
     part.axes = f.A;
     for (std::size_t i = 0; i < part.carried.size(); ++i) detail::place_point(f, part.carried[i], part, i);
+  });
+}
+
+template <class>
+void Visual::draw_line(Place a, Place b, double radius, std::string const& name) {
+  require_positive(radius, "line \"" + name + "\": the radius", "m");
+  Surface const tube = cylinder(radius, 1.0, Vec3::UnitZ(), 12);
+  parts_.push_back({name, tube, {}, std::vector<Vec3>(tube.points.size())});
+  for (Index const body : {a.body, b.body})
+    if (body >= 0 && parts_.back().world != World::space)
+      parts_.back().world = layout_.bodies[std::size_t(body)].planar ? World::plane : World::space;
+  moves_.push_back([a = std::move(a.frame_in), b = std::move(b.frame_in), tube](State const& x, VisualPart& part) {
+    Frame<double> const f = a(x), g = b(x);
+    Vec3 const arm = g.r - f.r;
+    double const length = arm.norm();
+    part.place = f.r + 0.5 * arm;
+    if (length > 0.0) part.axes = constraint_functions::triad_about(Vec3(arm / length), part.name);
+    for (std::size_t i = 0; i < tube.points.size(); ++i) {
+      Vec3 const& p = tube.points[i];
+      part.surface.points[i] = part.place + part.axes * Vec3(p[0], p[1], length * p[2]);
+      part.velocities[i] = p[2] < 0.0 ? f.v : g.v;
+    }
   });
 }
 

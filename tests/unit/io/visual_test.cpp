@@ -175,14 +175,43 @@ TEST(AttachedShapes, AreCarriedByTheirMarker) {
   EXPECT_NEAR(volume(parts[1].surface), pi, 1e-12);
 }
 
+// A line is a closed tube between its markers, also if they coincide for a moment.
+TEST(Lines, ConnectTheirMarkers) {
+  Model<Bodies<Rigid<>>, Joints<>> model;
+  auto const body = model.add(Rigid<>(2.0, Mat3::Identity()), "brick");
+  Visual visual(model);
+  visual.line(model.ground().at({0, 0, 5}), body.at({1, 0, 0}), 0.01, "rope");
+  EXPECT_EQ(visual.bodies_without_shape(), std::vector<std::string>{"brick"});
+  State x = model.reference_state();
+  x.v << 0, 0, 0, 0, 0, 3;
+  for (Vec3 const& r : {Vec3(4, 5, 6), Vec3(-1, 0, 2), Vec3(-1, 0, 5)}) {
+    x.q.head<3>() = r;
+    VisualPart const& rope = visual.at(x)[0];
+    Vec3 const end = r + Vec3(1, 0, 0);
+    double const length = (end - Vec3(0, 0, 5)).norm();
+    expect_closed(rope.surface);
+    EXPECT_NEAR(volume(rope.surface), pi * 1e-4 * length, 1e-12);
+    for (std::size_t i = 0; i < rope.surface.points.size(); ++i) {
+      bool const far = i >= rope.surface.points.size() / 2;
+      Vec3 const arm = rope.surface.points[i] - (far ? end : Vec3(0, 0, 5));
+      EXPECT_LT(arm.norm(), 0.0105);
+      EXPECT_LT(std::abs(arm.dot(end - Vec3(0, 0, 5))), 1e-14);
+      EXPECT_LT((rope.velocities[i] - Vec3(0, far ? 3 : 0, 0)).norm(), 1e-14);
+    }
+  }
+}
+
 TEST(Visual, RefusesWhatIsOfAnotherModel) {
   Model<Bodies<Rigid<>>, Joints<>> model, other;
   auto const body = other.add(Rigid<>::from(square()), "bar");
   Visual visual(model);
   expect_refused([&] { visual.sweep(body, square(), 3); }, {"bar", "another model"});
   expect_refused([&] { visual.attach(body.at(0.0), box({1, 1, 1}), "brick"); }, {"brick", "another model"});
+  expect_refused([&] { visual.line(model.ground().at({0, 0, 0}), body.at(0.0), 1.0, "rope"); },
+                 {"rope", "another model"});
   Visual right(other);
   expect_refused([&] { right.sweep(body, square(), 0); }, {"bar", "one piece"});
+  expect_refused([&] { right.line(body.at(0.0), body.at(1.0), 0.0, "rope"); }, {"rope", "radius"});
 }
 
 }  // namespace visual_test
