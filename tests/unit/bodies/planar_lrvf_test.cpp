@@ -37,14 +37,15 @@ VecX nodes(F&& node) {
   return q;
 }
 
-/// Strains and section forces in the middle of each element (the Gauss point).
+/// Strains and section forces, which are those of the middle (the Gauss point) at each point of an element.
 void expect_strains(VecX const& q, Vec3 const& expected) {
   planar::Lrvf const beam = straight();
-  for (int e = 0; e < elements; ++e) {
-    auto const p = beam.at((e + 0.5) * l);
-    EXPECT_LT((beam.strains<0>(p, view(q)) - expected).norm(), 1e-14) << e;
-    EXPECT_LT((beam.resultants<0>(p, view(q)) - expected.cwiseProduct(Vec3(900, 300, 40))).norm(), 1e-11) << e;
-  }
+  for (int e = 0; e < elements; ++e)
+    for (double const xi : {0.1, 0.5, 0.9}) {
+      auto const p = beam.at((e + xi) * l);
+      EXPECT_LT((beam.strains<0>(p, view(q)) - expected).norm(), 1e-14) << e;
+      EXPECT_LT((beam.resultants<0>(p, view(q)) - expected.cwiseProduct(Vec3(900, 300, 40))).norm(), 1e-11) << e;
+    }
 }
 
 double energy(VecX const& q) {

@@ -278,7 +278,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
       for (int i = 0; i < element_columns; ++i) k(i, j) = k(i, j) * moment - normal * turned.row[i] * turned.row[j];
   }
 
-  /// Section strains as a vector of six (`HasSections`). Components that the theory does not have are zero.
+  /// Section strains as a vector of six (`HasSections`). Components that the theory does not have are zero. Linear
+  /// elements have the strains of their middle.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return strains_of(group, p, q); });
   }
@@ -316,8 +317,9 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   template <class Group>
   auto strains_of(Group const& group, Point const& p, std::span<double const> q) const {
-    auto strain = group.strains(p.xi, l_, this->of_element(p.element, q));
-    if (!natural_.empty()) strain -= group.strains(p.xi, l_, this->of_element(p.element, std::span(natural_)));
+    double const xi = Theory::gradients > 0 ? p.xi : 0.5;  // linear elements: only strains of the middle do not lock
+    auto strain = group.strains(xi, l_, this->of_element(p.element, q));
+    if (!natural_.empty()) strain -= group.strains(xi, l_, this->of_element(p.element, std::span(natural_)));
     return strain;
   }
 
