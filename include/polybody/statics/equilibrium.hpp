@@ -114,7 +114,8 @@ template <class Solver>
     if (share < 1.0 || !(largest_size(step.moved) <= 1e-3 * (1.0 + largest_size(path.trial.q)))) continue;
     State const near = path.trial;
     double const size = 1.0 + largest_size(near.q);
-    // Free motions about the equilibrium make the tangent singular. Small steps of the damped motion then end it.
+    // Free motions about the equilibrium make its tangent singular. The damped motion then continues until its steps
+    // are below the tolerance.
     reached = step.mu < 1e-12 * largest_mu && largest_size(step.moved) <= options.tolerance * size;
     if (reached) break;
     path.tangent.remove_springs(path.trial.lambda);

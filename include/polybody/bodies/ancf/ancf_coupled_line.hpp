@@ -26,7 +26,7 @@ struct CoupledLine : ElasticLine {
 
   /// Strains (Γ, K), with p = (r₀′, r_y, r_z, r_y′, r_z′).
   struct Line {
-    using Section = ElasticLine::Section;
+    using Section = ElasticLine::Section;  ///< strains of the shape of the section
     static constexpr int points = 3;
     static constexpr int components = 3;
     static constexpr int parameters = 15;
