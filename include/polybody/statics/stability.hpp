@@ -343,13 +343,14 @@ Stability stability(System& system, StaticTangent<Solver>& tangent, State const&
     VecX motion = VecX::Zero(system.velocities());
     for (std::size_t i = 0; i < place.size(); ++i) each(int(i), [&](int j, double a) { motion[Index(i)] += a * z[j]; });
     if (!is_negative<>(entries, motion)) continue;
-    VecX change = motion, q = x.q;
-    for (double sign : {1.0, -1.0}) {
-      if (near.size() == 2) break;
+    if (near.empty()) {
+      VecX change(system.velocities()), q = x.q;
       tangent.fill_without_order(0, change);
-      change *= sign * error * (1.0 + largest_size(x.q));
-      system.plus(x.q, change, q);
-      near.push_back(entries_at(q));
+      change *= error * (1.0 + largest_size(x.q));
+      for (double const side : {1.0, -1.0}) {
+        system.plus(x.q, side * change, q);
+        near.push_back(entries_at(q));
+      }
     }
     if (!(is_negative<>(near[0], motion) && is_negative<>(near[1], motion))) continue;
     if (out.negative++ == 0) out.motion = std::move(motion);
