@@ -64,6 +64,7 @@ class Folder(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         validation.DOCS = Path(self.folder.name)
         (validation.DOCS / "validation.md").write_text(SUMMARY)
+        (validation.DOCS / "reliability.md").write_text(f"| a | {validation.COUNT}9{validation.AFTER} |\n| b | 3{validation.AFTER} |\n")
         self.write(RECORDS)
 
     def write(self, records, partial=False):
@@ -106,6 +107,9 @@ class Written(Folder):
         self.assertTrue(any(line.startswith("| all |  | 6 | 7 | ≤ 0.002 | ≤ 0.05 |") for line in lines))
         self.assertTrue(self.text("validation.md").endswith(SUMMARY[SUMMARY.index("## Not in") :]))
 
+    def test_count_in_another_page(self):
+        self.assertEqual(self.text("reliability.md"), f"| a | {validation.COUNT}7{validation.AFTER} |\n| b | 3{validation.AFTER} |\n")
+
     def test_again(self):
         before = {path: path.read_text() for path in validation.DOCS.rglob("*.md")}
         self.write(RECORDS)
@@ -140,6 +144,7 @@ class Pages(Folder):
         for name, old, new, fault in (
             ("validation.md", "| 2 | 3 |", "| 2 | 4 |", "docs/validation.md does not agree"),
             ("validation.md", "| all |  | 6 |", "| all |  | 7 |", "docs/validation.md does not agree"),
+            ("reliability.md", "-->7<", "-->8<", "docs/reliability.md does not agree"),
             ("validation.md", "### Contact", "### Statics", "docs/validated/closed_forms_rigid.md does not agree"),
             ("validation.md", "### Contact", "### Other", "does not describe C1"),
             ("validation.md", "| C1 |", "| C1, C2 |", "no test records the case C2"),
