@@ -128,7 +128,7 @@ std::vector<ExternalRun> runs_of(std::vector<ExternalResult> const& results, Pro
 
 Table external_table(OtherPrograms const& others, EqualErrorReport const& r) {
   Table t{"Other programs",
-          "Results of other programs. A time from another machine is not ranked.",
+          "Results of other programs.\nA time from another machine is not ranked.",
           {"program", "setting", "error / span", "time [s]", "machine", "ratio to the fastest"},
           2};
   for (ExternalRun const& run : others.runs) {

@@ -49,7 +49,7 @@ Table settings_table(EqualErrorReport const& r) {
                       Cell::number(f.limit_error, 2, 0.2 * f.limit_error)});
   }
   if (!several) {
-    t.note += " The integrator is " + r.formulations.front().integrator + ".";
+    t.note += "\nThe integrator is " + r.formulations.front().integrator + ".";
     return t;
   }
   t.heads.insert(t.heads.begin() + 3, "integrator");
@@ -75,7 +75,7 @@ Table cheapest_table(Problem const& problem, EqualErrorReport const& r) {
           "Cheapest run of each formulation whose discretisation error is at most the wanted error, relative to the "
           "span " +
               number(r.span, 4) + ' ' + r.unit() +
-              " of the output. Times are medians of repeated runs. The ratio is relative to the fastest "
+              " of the output.\nTimes are medians of repeated runs.\nThe ratio is relative to the fastest "
               "run, without rigid bodies of another physical model than \"" +
               problem.model + "\".",
           {"error", "formulation", "mesh, step", "error found " + r.unit(), "unknowns", "Newton iterations",
@@ -134,8 +134,8 @@ Table unranked_table(EqualErrorReport const& r) {
 
 Table difference_table(EqualErrorReport const& r) {
   Table t{"Differences between physical models",
-          "Largest difference over time between the converged results, with its error bar. A difference below its "
-          "error bar is not resolved. Models with an error bar above half of the span are omitted.",
+          "Largest difference over time between the converged results, with its error bar.\nA difference below its "
+          "error bar is not resolved.\nModels with an error bar above half of the span are omitted.",
           {"first", "second", "difference " + r.unit(), "error bar " + r.unit()},
           2};
   for (ModelDifference const& d : r.differences) {
@@ -152,7 +152,7 @@ Table difference_table(EqualErrorReport const& r) {
 Table round_off_table(Problem const& problem, EqualErrorReport const& r) {
   Table t{"Effect of round-off",
           "Largest change of the output if each initial coordinate changes by one unit in the last place, with the "
-          "finest mesh and the shortest step. Smaller errors and differences cannot be ranked.",
+          "finest mesh and the shortest step.\nSmaller errors and differences cannot be ranked.",
           {"formulation", "change " + r.unit(), "relative to the span"},
           1};
   for (StudiedFormulation const& f : r.formulations)
@@ -228,7 +228,7 @@ Table summary_table(std::vector<Done> const& all) {
   Table t{
       summary_title,
       "The three fastest formulations of each problem at each error, relative to the span of the output, with their "
-      "processor time relative to the fastest one. A formulation counts if its discretisation error and the "
+      "processor time relative to the fastest one.\nA formulation counts if its discretisation error and the "
       "difference of its physical model from the model in the second column are both at most the error.",
       {"problem", "physical model", "0.1", "0.01", "0.001", "0.0001"},
       1};

@@ -1,5 +1,5 @@
 // X8: constant-velocity joint of two Cardan joints and a sliding middle shaft, once and twice between the same shafts
-// (CASES3 8, data of OpenModelica's issue 8365). The second branch repeats one constraint equation of the first.
+// (data of OpenModelica's issue 8365). The second branch repeats one constraint equation of the first.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// CASES3 18: a fast top whose rotation is stable keeps its energy under every method of fixed step.
+// Question 15 of docs/twenty_questions.md: a fast top whose rotation is stable keeps its energy under every method of
+// fixed step.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +74,7 @@ TEST(FreeSpin, IsConservedByFreeRotationsOfExplicitSteps) {
   expect("Rattle", drift(Rattle{}));
 }
 
-// Ω(1 s) from DOP853 at 1e-13 [CASES3 18].
+// Ω(1 s) from DOP853 at 1e-13 (question 15).
 template <class I>
 double error_of(I const& integrator, double step) {
   FreeTop free;

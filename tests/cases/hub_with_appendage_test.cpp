@@ -1,4 +1,4 @@
-// Hub with a soft appendage under a torque (CASES3 2, after jgerstmayr/EXUDYN#1).
+// X2: hub with a soft appendage under a torque (after jgerstmayr/EXUDYN#1).
 
 #include <gtest/gtest.h>
 

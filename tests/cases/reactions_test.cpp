@@ -1,4 +1,4 @@
-// X15: reactions that contain every force (CASES3 15). A ladder leans on a wall. Its contact is 0.15 m from its
+// X15: reactions that contain every force. A ladder leans on a wall. Its contact is 0.15 m from its
 // mid-plane (after drake#13888 and #12123). A motor drives a link on a base, which feels the motor's torque once
 // (bullet3#2966, #4451).
 
@@ -83,7 +83,7 @@ void expect_ladder(char const* policy, P const& of_pin, Q const& of_weld, double
   compare(x, std::string(policy) + ", GeneralisedAlpha");
 }
 TEST(Reactions, OfALadderContainTheContact) {
-  EXPECT_NEAR(0.5 * 68.67 / std::tan(std::numbers::pi / 3), 19.823321, 5e-7);  // digits of CASES3
+  EXPECT_NEAR(0.5 * 68.67 / std::tan(std::numbers::pi / 3), 19.823321, 5e-7);  // digits of case X15
   EXPECT_NEAR(0.15 * 19.823321, 2.973498, 5e-7);
   auto const same = [](char const* name, auto const& policy, double tolerance) {
     expect_ladder(name, policy, policy, tolerance);

@@ -1,4 +1,4 @@
-// Clamped round rod under a tip force, a tip torque, and two welded rods under a torque (CASES3 3, after
+// X3: clamped round rod under a tip force, a tip torque, and two welded rods under a torque (after
 // google-deepmind/mujoco#2208 and GazzolaLab/PyElastica#135).
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// X7: platform on two Scott–Russell linkages, in the plane and in space (CASES3 7, after jgerstmayr/EXUDYN#39). In each
+// X7: platform on two Scott–Russell linkages, in the plane and in space (after jgerstmayr/EXUDYN#39). In each
 // linkage a short bar from a ground pin carries the middle of a long bar. The foot of the long bar moves along x, and
 // its head moves along y. The platform is pinned to the left heads and slides on the right heads.
 
@@ -132,7 +132,7 @@ void expect_unit(Lift<space> const& lift, State const& x, bool is_left, char con
   double const load = platform_mass * g * (is_left ? 1.0 - to_centre / span : to_centre / span),
                push = (load + (long_mass / 2 + short_mass / 4) * g) / std::tan(angle),
                foot = (long_mass / 2 + short_mass / 4) * g, weight = (long_mass + short_mass) * g;
-  EXPECT_NEAR(push, is_left ? 1190.861215 : 630.455938, 5e-7);  // digits of CASES3
+  EXPECT_NEAR(push, is_left ? 1190.861215 : 630.455938, 5e-7);  // digits of case X7
   auto const& units = is_left ? lift.left : lift.right;
   std::string const side = is_left ? "left" : "right";
   for (std::size_t k = 0; k < units.size(); ++k) {

@@ -1,4 +1,4 @@
-// Servo that presses a hinge against its stop and then reverses (CASES3 14, after dartsim/dart#1583 and #2422), and a
+// X14: servo that presses a hinge against its stop and then reverses (after dartsim/dart#1583 and #2422), and a
 // pendulum at rest on its backlash stop (jiminy#778).
 
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ struct Arm {
 struct Time {
   double t, angle;
 };
-/// Angles of CASES3, by Radau IIA of scipy with rtol 1e-11, from θ̈ = (servo + stop − 7.3575 sin θ)/0.5.
+/// Angles by Radau IIA of scipy with rtol 1e-11, from θ̈ = (servo + stop − 7.3575 sin θ)/0.5.
 constexpr Time times[] = {{0.1, 0.08387673},  {0.3, 0.27768540}, {0.5, 0.46474471}, {1.9, 0.50164620},
                           {2.05, 0.46195710}, {2.1, 0.40825029}, {2.3, 0.19687401}, {2.5, -0.00704989}};
 

@@ -1,4 +1,4 @@
-// Shaft that turns an arm through a rigid corner (CASES3 1, after Dhondtguido/CalculiX#42).
+// X1: shaft that turns an arm through a rigid corner (after Dhondtguido/CalculiX#42).
 
 #include <gtest/gtest.h>
 

@@ -214,25 +214,31 @@ std::string composition() {
 
   static_assert(ConstrainedCoordinates<Spherical>::needs == MarkerKind::frame);
   return geometry_policy.text("geometry") +
-         "\nv: a compliant policy needs equations between positions, and the geometry has nonholonomic equations. f: a "
-         "bushing needs the free directions of the geometry, which are not defined. j: the free motion of the geometry "
-         "has no joint coordinates. l: the equations are not linear in the coordinates of ANCF bodies.\n\n" +
+         "\nv: a compliant policy needs equations between positions, and the geometry has nonholonomic equations.\n"
+         "f: a bushing needs the free directions of the geometry, which are not defined.\n"
+         "j: the free motion of the geometry has no joint coordinates.\n"
+         "l: the equations are not linear in the coordinates of ANCF bodies.\n\n" +
          geometry_body.text("geometry, with `Constraint`") +
-         "\n✓: either marker. 2nd: only the second marker. n: the markers of the body do not provide the axis or "
-         "frame. w: the geometry is for the plane and the body for space, or vice versa. The ground can be used "
-         "everywhere. A bushing needs a frame at its first marker.\n\n" +
+         "\n✓: either marker.\n"
+         "2nd: only the second marker.\n"
+         "n: the markers of the body do not provide the axis or frame.\n"
+         "w: the geometry is for the plane and the body for space, or vice versa.\n"
+         "The ground can be used everywhere.\n"
+         "A bushing needs a frame at its first marker.\n\n" +
          policy_body.text("policy, with at least one geometry") +
          "\nr: joint coordinates need a body with a frame, and `JointCoordinatesBy<ArticulatedBody>` needs rigid "
-         "bodies. l: positions of points are not linear in the coordinates of the body.\n\n" +
+         "bodies.\n"
+         "l: positions of points are not linear in the coordinates of the body.\n\n" +
          integrator_body.text("integrator") +
-         "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation. m: the mass "
-         "matrix is not constant. e: the mass matrix is not constant, or the mean force over a step does not "
-         "exist.\n\n" +
+         "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation.\n"
+         "m: the mass matrix is not constant.\n"
+         "e: the mass matrix is not constant, or the mean force over a step does not exist.\n\n" +
          integrator_policy.text("integrator") +
-         "\ns: the method has no stabilisation for constraint equations. m: the mass matrix of joint coordinates is "
-         "not constant. e: the method needs joints without elimination and without nonholonomic equations, and forces "
-         "that are linear in g and ġ. t: the method solves its three stages in one linear system, which "
-         "`ArticulatedBody` cannot solve.\n";
+         "\ns: the method has no stabilisation for constraint equations.\n"
+         "m: the mass matrix of joint coordinates is not constant.\n"
+         "e: the method needs joints without elimination and without nonholonomic equations, and forces that are "
+         "linear in g and ġ.\n"
+         "t: the method solves its three stages in one linear system, which `ArticulatedBody` cannot solve.\n";
 }
 
 std::string const begins = "<!-- composition begins: written by tests/house/composition_matrix.cpp -->\n",

@@ -27,7 +27,7 @@ struct FreeBody {
   State x = model.reference_state();
 };
 
-// The start (1, 1, 1, 0) of CASES3 18: its norm √3 gives axes of length 3.
+// The start (1, 1, 1, 0): its norm √3 gives axes of length 3.
 TEST(StatePlaces, AQuaternionThatIsNotOfUnitNormIsRefused) {
   FreeBody free;
   free.x.q.tail<4>() = Vec4(1, 1, 1, 0);
@@ -48,7 +48,7 @@ TEST(StatePlaces, ANormalisedQuaternionIsAccepted) {
   assemble(free.model, free.x);
   EXPECT_NEAR(frame(free.model, free.x, free.body.at(Vec3(1, 0, 0))).A.determinant(), 1.0, 1e-14);
 }
-// g l m/(J + m l²) of a rod of 1 kg with J = 1 kg m² about its centre, 1 m from a horizontal pin [CASES3 18].
+// g l m/(J + m l²) of a rod of 1 kg with J = 1 kg m² about its centre, 1 m from a horizontal pin.
 TEST(StatePlaces, AHorizontalRodFallsWithTheRightAcceleration) {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
