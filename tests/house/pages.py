@@ -3,7 +3,7 @@
 - A line of a page has one sentence, also in lists, and a sentence does not continue on the next line. Tables, code,
   formulas and headings are exempt. --split writes each sentence of the given pages in its own line.
 - In the pages of ONE_NUMBER, a cell of a table has at most one number, except in the first column. Numbers in code,
-  sources in brackets and intervals such as 1 to 4 s count as words.
+  sources and units in brackets, and intervals such as 1 to 4 s count as words.
 - No file cites CASES3 or M113.md, which are not part of the repository.
 - A program of examples/mechanisms has at most 60 lines.
 """
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 GENERATED = re.compile(r"docs/(notes|validated)/.*|docs/references\.md")  # or notes
-ONE_NUMBER = re.compile(r"docs/(performance|reliability|tracked_vehicle|peers|chapter3/runs)\.md")
+ONE_NUMBER = re.compile(r"docs/(performance|reliability|chapter2|tracked_vehicle|peers|chapter3/runs)\.md")
 MISSING = re.compile(r"\bCASES\d*\.md\b|\bCASES\d\b|\bM113\.md\b")
 LONGEST_MECHANISM = 60  # lines
 
@@ -74,7 +74,7 @@ def split(text):
 def faults_of_cells(name, text):
     for number, line in enumerate(without_code(text).split("\n"), 1):
         for cell in line.strip().strip("|").split("|")[1:] if line.startswith("|") else ():
-            plain = re.sub(r"`[^`]*`|\]\([^)]*\)|\[[\d, ]+\]|\b\d+ to \d+", "", cell)
+            plain = re.sub(r"`[^`]*`|\]\([^)]*\)|\[[\d, ]+\]|\[1/\w+\]|\b\d+ to \d+", "", cell)
             if len(NUMBER.findall(plain)) > 1:
                 yield f"{name}:{number}: more than one number in a cell: {cell.strip()[:80]}"
 
