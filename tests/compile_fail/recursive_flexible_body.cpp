@@ -1,4 +1,4 @@
-// refused: JointCoordinates supports joints between the ground, rigid bodies and floating frames
+// refused: JointCoordinates supports joints between the ground, rigid bodies, floating frames
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/elimination.hpp>
 #include <polybody/joints/standard_joints.hpp>

@@ -26,8 +26,11 @@ class ReductionOf {
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
     Sequence<Extent> extents;
-    model.for_each_body(
-        [&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.velocities()}); });
+    model.for_each_body([&](auto const& e) {
+      using B = std::decay_t<decltype(e.body)>;
+      extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.velocities()});
+      if constexpr (HasFrameNodes<B>) extents.back().nodes = e.body.elements() + 1;
+    });
     number_unknowns(extents, model.coordinates(), model.velocities(), model.states());
     Sequence<bool> eliminated(std::size_t(model.rows()), false);
     model.for_each_joint([&](auto const& e) {
@@ -93,9 +96,9 @@ class ReductionOf {
     JointMotions motions;
   };
 
-  /// First coordinate and velocity of a body in the model, and numbers of coordinates and velocities.
+  /// First coordinate and velocity of a body in the model, and numbers of coordinates, velocities and nodes.
   struct Extent {
-    Index q0, nq, v0, nv;
+    Index q0, nq, v0, nv, nodes = 0;
   };
 
   template <class M>
@@ -150,6 +153,23 @@ class ReductionOf {
         h.frame.axes = m.axes;
         h.end = {&publish_end<B>, &e.body, &m.point, m.axes, B::frame_layout, e.q0, e.v0, e.body.deformations()};
       }
+    } else if constexpr (HasFrameNodes<B>) {
+      constexpr RigidLayout layout = B::world == World::plane ? RigidLayout::plane : RigidLayout::quaternion;
+      constexpr Index nq = layout == RigidLayout::plane ? 3 : 7, nv = B::element_stride;
+      Sequence<Index> first;
+      for (auto const& e : pool.entries) {
+        first.push_back(Index(bodies.size()));
+        for (Index k = 0; k <= e.body.elements(); ++k)
+          bodies.push_back(
+              {.name = e.name, .layout = layout, .q0 = e.q0 + k * nq, .v0 = e.v0 + k * nv, .chain = first.back()});
+      }
+      for (auto const& m : pool.markers) {
+        Index const node = B::node_of(m.point);
+        if (node < 0) continue;
+        BodyAttachment& h = attachments[std::size_t(m.published)];
+        h.body = first[std::size_t(m.body)] + node;
+        h.frame = {pool.entries[std::size_t(m.body)].body.node_arm(m.point), m.axes};
+      }
     }
   }
   template <class B>
@@ -188,6 +208,7 @@ class ReductionOf {
 
   /// Builds the tree breadth first from the ground, then from one body of each group without connection to the ground.
   /// Every joint with joint coordinates carries one body. If `all` is true, bodies without such joints become roots.
+  /// The tree also moves the free nodes of each chain with a carried node; they are roots with `free_motions`.
   void build_tree(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
   void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
@@ -207,11 +228,23 @@ class ReductionOf {
       TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0
                                  ? nullptr
                                  : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
-      if (body) {
+      bool moves_nodes = false;
+      for (Index k = 0; k < x.nodes; ++k)
+        if (Index const at = in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)]; at >= 0) {
+          TreeBody& node = tree_.bodies[std::size_t(at)];
+          node.qn = coordinates_ + k * x.nq / x.nodes;
+          node.vn = velocities_ + k * x.nv / x.nodes;
+          moves_nodes = moves_nodes || node.motions.count > 0 || node.carried();
+        }
+      if (body && x.nodes == 0) {
         body->qn = coordinates_;
         body->vn = velocities_;
       }
-      if (body && body->carried()) {
+      if (moves_nodes) {
+        place.kind = ReducedPosition::Kind::carried;
+        for (Index k = 0; k < x.nodes; ++k)
+          number_node(tree_.bodies[std::size_t(in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)])]);
+      } else if (body && body->carried()) {
         place.kind = ReducedPosition::Kind::carried;
         coordinates_ += body->motions.coordinates();
         velocities_ += body->motions.velocities();
@@ -240,6 +273,19 @@ class ReductionOf {
       same_v_.emplace_back(velocities_++, j);
       full_velocity_.push_back(j);
     }
+  }
+
+  /// Numbers the unknowns of a node: the joint coordinates of a carried node, or those of a free node in the full
+  /// vectors.
+  void number_node(TreeBody& node) {
+    node.qn = coordinates_;
+    node.vn = velocities_;
+    Index const nq = node.motions.coordinates(), nv = node.motions.velocities();
+    for (Index k = 0; k < nq && !node.carried(); ++k) same_q_.emplace_back(node.qn + k, node.q0 + k);
+    for (Index k = 0; k < nv && !node.carried(); ++k) same_v_.emplace_back(node.vn + k, node.v0 + k);
+    for (Index k = 0; k < nv; ++k) full_velocity_.push_back(node.v0 + (node.carried() ? 0 : k));
+    coordinates_ += nq;
+    velocities_ += nv;
   }
 
   /// \param eliminated true for each constraint equation that a policy eliminates
@@ -334,9 +380,18 @@ void ReductionOf<T>::build_tree(Sequence<TreeBody> const& bodies, Sequence<Link>
     grow(order_.size() - 1);
   }
   order_.clear();
-  if (!all) return;
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
+  Sequence<bool> moved(bodies.size(), false);  // by chain
+  for (TreeBody const& node : tree_.bodies)
+    if (node.chain >= 0 && node.carried()) moved[std::size_t(node.chain)] = true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bool const is_node = bodies[i].chain >= 0 && moved[std::size_t(bodies[i].chain)];
+    if (place[i] < 0 && (all || is_node)) {
+      place[i] = Index(tree_.bodies.size());
+      tree_.bodies.push_back(bodies[i]);
+    }
+    if (TreeBody* const node = is_node ? &tree_.bodies[std::size_t(place[i])] : nullptr; node && !node->carried())
+      node->motions = free_motions(node->layout == RigidLayout::plane);
+  }
 }
 
 using Reduction = ReductionOf<>;  ///< reduction of vectors of doubles

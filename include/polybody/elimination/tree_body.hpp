@@ -20,17 +20,18 @@ struct JointTurn {
   Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the rotation, (w, x, y, z)
 };
 
-/// Body of a tree: layout of its pose, and the joint that carries it.
+/// Body of a tree, or node of a chain with frames: layout of its pose, and the joint that carries it.
 struct TreeBody {
   std::string name;                              ///< name in messages
   RigidLayout layout = RigidLayout::quaternion;  ///< layout of its coordinates
   Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity in full vectors
   Index row = -1;                                ///< first constraint equation of its joint; −1: a root, without joint
   Index parent = -1;                             ///< index in the tree; −1: the ground, or none for a root
+  Index chain = -1;                              ///< for a node: number of its chain; −1 for a body
   Placement from = {};                           ///< frame of the joint in the axes of the parent
   Placement to = {};                             ///< frame of the joint in the axes of the body
   bool from_turned = true, to_turned = true;     ///< true if frame `from` or `to` is rotated relative to its body
-  JointMotions motions = {};                     ///< motions from frame a to frame b
+  JointMotions motions = {};                     ///< motions from frame a to frame b; `free_motions` of a free node
   Index from_end = -1, to_end = -1;              ///< indices of floating ends, for frames on flexible bodies; −1: none
   Index deformations = 0;                        ///< number of deformation coordinates, which follow those of the frame
   JointTurn turn = {};                           ///< constants of a single rotation between rigid bodies

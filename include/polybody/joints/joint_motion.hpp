@@ -75,6 +75,15 @@ JointMotions motions_of(G const& geometry) {
   }
 }
 
+/// Motions of a free frame in space, or in the plane. Their coordinates and velocities are those of a rigid body.
+template <class = void>  // compiled only if used
+JointMotions free_motions(bool in_plane) {
+  JointMotions out;
+  for (int i = 0; i < (in_plane ? 2 : 3); ++i) out.add({JointMotion::Kind::slide, i});
+  out.add({in_plane ? JointMotion::Kind::turn : JointMotion::Kind::ball, in_plane ? 2 : 0});
+  return out;
+}
+
 /// Selects the `motions` of a joint that stay in the plane: translations perpendicular to the normal, and the rotation
 /// about the normal. The normal is one of the joint's axes.
 /// \param axes (3×3) columns are the joint's axes in world axes

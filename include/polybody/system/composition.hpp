@@ -27,16 +27,17 @@ template <class P, class G>
 concept EnforceablePair = MeasurableGeometry<P, G> && EnforceableGeometry<P, G> && HolonomicOrConstrained<P, G> &&
                           JointCoordinatesIfRequired<P, G> && LinearIfRequired<P, G>;
 
-/// If policy P uses joint coordinates, body B is a rigid body or a floating frame. Joint coordinates can determine the
-/// position of these bodies only. `joint_coordinates::ArticulatedBody` supports rigid bodies only.
+/// If policy P uses joint coordinates, body B is a rigid body or has a floating frame or nodes with frames. Joint
+/// coordinates can determine the position of these frames only. `joint_coordinates::ArticulatedBody` supports rigid
+/// bodies only.
 template <class P, class B>
-concept CarriableBody =
-    !JointCoordinatePolicy<P> || HasRigidLayout<B> ||
-    (FloatingFrameBody<B> && !std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>);
+concept CarriableBody = !JointCoordinatePolicy<P> || HasRigidLayout<B> ||
+                        ((FloatingFrameBody<B> || HasFrameNodes<B>) &&
+                         !std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>);
 
-/// If policy P eliminates coordinates, it can eliminate those of body B. `JointCoordinates` requires a rigid body or a
-/// floating frame, and `AncfLinear` requires points that are linear in the coordinates. The ground is always supported,
-/// because it has no coordinates.
+/// If policy P eliminates coordinates, it can eliminate those of body B. `JointCoordinates` requires a rigid body, a
+/// floating frame or nodes with frames, and `AncfLinear` requires points that are linear in the coordinates. The ground
+/// is always supported, because it has no coordinates.
 template <class P, class B>
 concept EliminableBody = std::is_same_v<B, Ground> || (CarriableBody<P, B> && (!LinearPolicy<P> || HasLinearPoints<B>));
 

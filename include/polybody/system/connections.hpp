@@ -223,6 +223,10 @@ template <class J, class A, class B>
     require_along_tangent(axes_b, triad, name);
   require_observed(a.marker, needs_of_first<Requirement>(), name);
   require_observed(b.marker, needs_of_second<Requirement>(), name);
+  if constexpr (JointCoordinatePolicy<P>) {
+    require_node(a.marker, name);
+    require_node(b.marker, name);
+  }
   parts.joint_names.require_free(name, "joint");
   parts.origin.change();
   if constexpr (LinearPolicy<P>) {  // before markers are added, because this may throw
@@ -362,10 +366,11 @@ constexpr void require_pairing() {
       JointCoordinatesIfRequired<P, G>,
       "JointCoordinates needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
       "Universal. A Distance or a Gear has no such coordinates: use Constraint.");
-  static_assert(!JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
-                "JointCoordinates supports joints between the ground, rigid bodies and floating frames: Rigid<>, Ffr, "
-                "planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use "
-                "another policy for other bodies.");
+  static_assert(
+      !JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
+      "JointCoordinates supports joints between the ground, rigid bodies, floating frames, and nodes of beams "
+      "with rotations: Rigid<>, Ffr, Lrvf, Se3Beam and those of polybody::planar; "
+      "JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use another policy for other bodies.");
   static_assert(!LinearPolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
                 "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the "
                 "ground. Markers of Rigid, Ffr and spatial Lrvf are not linear: use Constraint for them.");

@@ -119,6 +119,18 @@ void require_apart([[maybe_unused]] Marker<A> const& a, [[maybe_unused]] Marker<
                          {"\"", ErrorObject{name}, "\" joins a rigid body to itself. Give it markers of two bodies."});
 }
 
+/// Requires a point in the section of a node, if the body has nodes with frames. \throws InvalidInput naming the joint.
+template <class B>
+void require_node([[maybe_unused]] Marker<B> const& m, [[maybe_unused]] std::string const& name) {
+  if constexpr (HasFrameNodes<B>)
+    if (B::node_of(m.point) < 0)
+      throw InvalidInput(
+          "joint.not_at_a_node",
+          {"\"", ErrorObject{name},
+           "\" has joint coordinates, but its marker is between two nodes of the beam, in element ",
+           ErrorValue{int(m.point.element)}, ". Use a mesh with a node at this point, or the policy Constraint."});
+}
+
 /// Requires a tangent parallel to the joint's axis at a second marker without axes. \throws InvalidInput naming the
 /// joint if the sine of the angle between them exceeds 1e-6.
 inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {

@@ -53,6 +53,16 @@ concept FloatingFrameBody = requires(B const b) {
   { b.deformations() } -> std::convertible_to<Index>;
 };
 
+/// Chain of nodes with frames, which joints with `JointCoordinates` can connect. A node has the coordinates and the
+/// generalised velocities of a rigid body (`RigidLayout`), stored one node after another. `node_of(p)` is the number of
+/// the node in whose section the point p is; −1 between nodes. `node_arm(p)` (3) is the vector from the node to p, in
+/// the axes of the node [m].
+template <class B>
+concept HasFrameNodes = requires(B const b, typename B::Point p) {
+  { B::node_of(p) } -> std::same_as<Index>;
+  { b.node_arm(p) } -> std::same_as<Vec3>;
+};
+
 /// True for bodies that move by m r̈ = m g and J Ω˙ + Ω × J Ω = 0 if only gravity acts on them. The declaration holds
 /// for the type itself and not for derived types.
 template <class B>

@@ -54,6 +54,10 @@ class FrameChain {
   Index velocities() const { return 6 * (n_ + 1); }
   Index first_column(Index e) const { return 6 * e; }
   Index first_column(Point const& p) const { return first_column(p.element); }
+  /// Number of the node at ξ = 0 or ξ = 1; −1 between nodes (`HasFrameNodes`).
+  static Index node_of(Point const& p) { return p.xi == 0.0 ? p.element : p.xi == 1.0 ? p.element + 1 : -1; }
+  /// Vector from the node of p to p, in the axes of its section [m].
+  Vec3 node_arm(Point const& p) const { return from_centre(p); }
   char const* coordinate_unit(Index i) const { return i % 7 < 3 ? "m" : "1"; }
   char const* velocity_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
 
