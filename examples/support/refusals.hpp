@@ -26,9 +26,10 @@ constexpr char const* connect_refusal() {
   using P = typename J::PolicyType;
   constexpr bool eliminable = EliminableBody<P, A> && EliminableBody<P, B>;
   if constexpr (JointCoordinatePolicy<P> && !eliminable)
-    return "JointCoordinates supports joints between the ground, rigid bodies and floating frames: Rigid<>, Ffr, "
-           "planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use another "
-           "policy for other bodies.";
+    return "JointCoordinates supports joints between the ground, rigid bodies, floating frames, and nodes of beams "
+           "with "
+           "rotations: Rigid<>, Ffr, Lrvf, Se3Beam and those of polybody::planar; JointCoordinatesBy<ArticulatedBody> "
+           "supports rigid bodies only. Use another policy for other bodies.";
   else if constexpr (LinearPolicy<P> && !eliminable)
     return "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the ground. "
            "Markers of Rigid, Ffr and spatial Lrvf are not linear: use Constraint for them.";

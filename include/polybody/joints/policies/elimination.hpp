@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Policies that eliminate unknowns of a step: joint coordinates of rigid bodies and floating frames, and linear joints
-/// of ANCF bodies and of `planar::Lrvf`.
+/// Policies that eliminate unknowns of a step: joint coordinates, and linear joints of ANCF bodies and of
+/// `planar::Lrvf`.
 /// Theory: Eqs. 5.10 to 5.21.
 
 #include <polybody/joints/joint_motion.hpp>
