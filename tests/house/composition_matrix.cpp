@@ -226,7 +226,8 @@ std::string composition() {
          "The ground can be used everywhere.\n"
          "A bushing needs a frame at its first marker.\n\n" +
          policy_body.text("policy, with at least one geometry") +
-         "\nr: joint coordinates need a rigid body, a floating frame or nodes with frames, and `JointCoordinatesBy<ArticulatedBody>` needs rigid "
+         "\nr: joint coordinates need a rigid body, a floating frame or nodes with frames, and "
+         "`JointCoordinatesBy<ArticulatedBody>` needs rigid "
          "bodies.\n"
          "l: positions of points are not linear in the coordinates of the body.\n\n" +
          integrator_body.text("integrator") +
