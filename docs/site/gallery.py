@@ -1,30 +1,68 @@
-"""The gallery as a page. It reads the list of the examples and their pictures from docs/site/build, one per line:
+"""Sections of the gallery: the examples with their pictures and films, the small mechanisms and the atlas.
+
+  docs/site/gallery.py LABEL... < LINES    LABEL: labels of the pages of the atlas
+
+docs/site/build writes a line for each example, and for each of its pictures and films:
 
   stage    NAME   DESCRIPTION   COMMAND
-  picture  FILE   CAPTION
+  picture  FILE   SENTENCE
 
-Fields are separated by tabs.
+Fields are separated by tabs. The mechanisms are those of docs/mechanisms.md, which is read here.
 
 """
 import html
+import re
 import sys
+from pathlib import Path
 
-print("# Gallery {#site_gallery}\n")
-print("`examples/run` builds the examples, runs them one after the other and draws these pictures. `examples/run NAME` runs one of them.\n")
-stages = []
-for line in sys.stdin.read().splitlines():
-    kind, *fields = line.split("\t")
-    if kind == "stage":
-        stages.append((*fields, []))
-    else:
-        stages[-1][-1].append(fields)
-for name, shows, command, pictures in stages:
-    print(f"## {name.replace('_', ' ').capitalize().replace(' fe', ' finite elements')}\n\n{shows}\n")
-    print(f"```sh\nexamples/run {name}   # builds it, and runs: {command}\n```\n")
-    if pictures:
-        print("\\htmlonly\n<div class=\"gallery\">")
-        for path, caption in (map(html.escape, picture) for picture in pictures):
-            print(f"<figure><a href=\"{path}\"><img loading=\"lazy\" src=\"{path}\" alt=\"{caption}\"/></a><figcaption>{caption}</figcaption></figure>")
-        print("</div>\n\\endhtmlonly\n")
-if not any(pictures for *_, pictures in stages):
-    print("This site was built before any example ran. Run `examples/run`, then `docs/site/build` again.")
+ROOT = Path(__file__).resolve().parent.parent.parent
+FIGURE = '<figure><a href="{0}"><img loading="lazy" src="{0}" alt="{1}"/></a><figcaption>{1}</figcaption></figure>'
+FILM = '<figure class="film"><a href="{0}">&#9654; Film</a>. {1}</figure>'
+MECHANISM = re.compile(r"^## (.*)\n\n(.*)\nKnown number: (.*)\n\n!\[.*\]\(.*/(\w+\.png)\)", re.M)
+
+LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+
+
+def show(pictures):
+    """The pictures and films of a section, pairs of file and sentence."""
+    print('\\htmlonly\n<div class="gallery">')
+    for file, sentence in pictures:
+        print((FILM if file.endswith(".html") else FIGURE).format(html.escape(file), html.escape(sentence)))
+    print("</div>\n\\endhtmlonly\n")
+
+
+def examples(lines):
+    stages = []
+    for line in lines:
+        kind, *fields = line.split("\t")
+        if kind == "stage":
+            stages.append((*fields, []))
+        else:
+            stages[-1][-1].append(fields)
+    if not any(pictures for *_, pictures in stages):
+        print("\nThis site was built before any example ran. Run `examples/run`, then `docs/site/build` again.")
+    print()
+    for name, shows, command, pictures in stages:
+        print(f"## {name.replace('_', ' ').capitalize().replace(' fe', ' finite elements')}\n\n{shows}\n")
+        print(f"```sh\nexamples/run {name}   # builds it, and runs: {command}\n```\n")
+        if pictures:
+            show(pictures)
+
+
+def mechanisms():
+    page = (ROOT / "docs/mechanisms.md").read_text(encoding="utf-8")
+    print('## Mechanisms\n\nThe page \\ref page_mechanisms "Small mechanisms" has their programs.\n')
+    show([(file, f"{name}. {sentence} Known number: {known}") for name, sentence, known, file in MECHANISM.findall(page)])
+
+
+def atlas(reports):
+    print("## Atlas\n\nEach page compares the formulations at equal error. `atlas` writes the reports with curves.\n")
+    for name, *report in reports:
+        title, _, sentence, *_ = LINK.sub(r"\1", (ROOT / f"docs/atlas/{name}.md").read_text(encoding="utf-8")).split("\n")
+        print(f'- \\ref page_{name} "{title.removeprefix("# ")}": {sentence}', *(f'<a href="{file}">Report with curves</a>.' for file in report))
+
+
+if __name__ == "__main__":
+    examples(sys.stdin.read().splitlines())
+    mechanisms()
+    atlas([argument.split("=") for argument in sys.argv[1:]])

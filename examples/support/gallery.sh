@@ -1,4 +1,6 @@
-# Names and captions of the examples of examples/run, and the page of their pictures. Other scripts source this file.
+# Names of the examples of examples/run, and the page of their pictures. Other scripts source this file.
+# pictures.tsv lists the pictures and films of each example in their order, with a sentence for each.
+gallery_list=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/pictures.tsv
 
 # Examples that are built by default: the thesis. Then studies and designs.
 chapters=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
@@ -9,7 +11,7 @@ stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 declare -A seconds=([pendulum]=15 [robot_arm]=90 [cantilever]=25 [chain_study]=30 [tracked_vehicle]=150 [link_from_fe]=25 [track_stress]=120 [vehicle_study]=50 [identify]=45 [lighter_link]=40)
 
 declare -A shows=(
-  [pendulum]="A rod on a pin, in 22 lines: time, energy drift [J] and constraint violation [m] after two seconds."
+  [pendulum]="A rod on a pin, released from the horizontal: energy drift and constraint violation after two seconds."
   [robot_arm]="The flexible robot arm of Chapter 2: shapes, deflections, and energies under several formulations."
   [cantilever]="The clamped beam of Chapter 2 under a moment at its tip, up to a full circle."
   [chain_study]="A study of 100 runs: stiffness of penalty pins, step, integrator, and the cost of accuracy."
@@ -28,14 +30,28 @@ command_of() {
     robot_arm | cantilever) echo "$1 --case all --out $2/$1$film" ;;
     tracked_vehicle | track_stress) echo "$1 --figure all --out $2/$1$film" ;;
     identify | lighter_link) echo "$1 --out $2/$1" ;;
+    pendulum) echo "$1 $2/$1" ;;
     chain_study | vehicle_study) echo "$1 --threads $(nproc) --out $2/$1" ;;
     *) echo "$1" ;;
   esac
 }
 
-films_of() { find "$1" -type f -name 'film*.html' 2> /dev/null | sort; }
+# sentences_of NAME: file and sentence of each picture and film of the example, separated by a tab.
+sentences_of() { awk -F '\t' -v name="$1" '$1 == name { print $2 "\t" $3 }' "$gallery_list"; }
 
-pictures_of() { find "$1" -type f \( -name '*.png' -o -name '*.svg' \) 2> /dev/null | sort; }
+# pictures_of NAME OUT: those whose file exists in OUT/NAME.
+pictures_of() {
+  local file sentence
+  while IFS=$'\t' read -r file sentence; do
+    [ ! -f "$2/$1/$file" ] || printf '%s\t%s\n' "$file" "$sentence"
+  done < <(sentences_of "$1")
+}
+
+# unlisted_of NAME OUT: pictures and films in OUT/NAME without a sentence.
+unlisted_of() {
+  LC_ALL=C comm -13 <(sentences_of "$1" | cut -f 1 | LC_ALL=C sort) \
+    <(cd "$2/$1" && find . -type f \( -name '*.png' -o -name '*.svg' -o -name 'film*.html' \) | sed 's|^\./||' | LC_ALL=C sort)
+}
 
 # left DONE ALL ELAPSED: the remaining time if DONE of ALL expected seconds took ELAPSED.
 left() {
@@ -50,21 +66,10 @@ left() {
 
 escaped() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' <<< "$1"; }
 
-# caption_of PICTURE: the title in the script of the same name, or the words of the picture's name.
-caption_of() {
-  local script=${1%.*}.gp title=
-  [ ! -r "$script" ] || title=$(sed -n "s/^set title '\(.*\)' noenhanced\$/\1/p" "$script" | head -n 1 | sed "s/''/'/g")
-  local name=$(basename "${1%.*}" | tr _ ' ')
-  echo "${title:-${name^}}"
-}
-
-# title_of FILM: the title of the film's page, unchanged.
-title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$//'; }
-
-# write_index OUT: writes OUT/index.html with all pictures and films below OUT. The page is written to a temporary file
-# and moved, so it is never incomplete.
+# write_index OUT: writes OUT/index.html with the listed pictures and films below OUT, and prints the names of others. The
+# page is written to a temporary file and moved, so it is never incomplete.
 write_index() {
-  local out=$1 page=$1/index.html.part name picture path caption films
+  local out=$1 page=$1/index.html.part name file path sentence films
   mkdir -p "$out"
   {
     cat << 'HEAD'
@@ -78,7 +83,7 @@ write_index() {
   code { background: #f2f2f2; padding: .2em .4em; }
   .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(24em, 1fr)); gap: 1.5em; }
   figure { margin: 0; } img { width: 100%; border: 1px solid #ddd; } figcaption { font-size: 90%; }
-  .film a { font-weight: 600; }
+  .film { grid-column: 1 / -1; margin: 0; } .film a { font-weight: 600; }
 </style>
 <h1>polybody: examples</h1>
 HEAD
@@ -87,20 +92,22 @@ HEAD
       echo "<h2>$name</h2>"
       echo "<p>$(escaped "${shows[$name]}")</p>"
       # If the example has films, its command includes the viewer.
-      films=$(films_of "$out/$name")
+      films=$(pictures_of "$name" "$out" | grep '^film' || true)
       echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out" "${films:+build/examples/polybody_viewer.html}")")</code></p>"
-      while IFS= read -r picture; do
-        path=$(escaped "${picture#"$out"/}")
-        echo "<p class=\"film\"><a href=\"$path\">&#9654; $(title_of "$picture")</a></p>"
-      done < <([ -z "$films" ] || echo "$films")
       echo '<div class="figures">'
-      while IFS= read -r picture; do
-        path=$(escaped "${picture#"$out"/}")
-        caption=$(escaped "$(caption_of "$picture")")
-        echo "<figure><a href=\"$path\"><img loading=\"lazy\" src=\"$path\" alt=\"$caption\"></a>"
-        echo "<figcaption>$caption</figcaption></figure>"
-      done < <(pictures_of "$out/$name")
+      while IFS=$'\t' read -r file sentence; do
+        path=$(escaped "$name/$file") sentence=$(escaped "$sentence")
+        case $file in
+          *.html) echo "<p class=\"film\"><a href=\"$path\">&#9654; Film</a>. $sentence</p>" ;;
+          *)
+            echo "<figure><a href=\"$path\"><img loading=\"lazy\" src=\"$path\" alt=\"$sentence\"></a>"
+            echo "<figcaption>$sentence</figcaption></figure>" ;;
+        esac
+      done < <(pictures_of "$name" "$out")
       echo '</div>'
+      while IFS= read -r file; do
+        echo "Not on the page, because ${gallery_list##*/} has no sentence for it: $out/$name/$file" >&2
+      done < <(unlisted_of "$name" "$out")
     done
     echo '</html>'
   } > "$page"
