@@ -528,7 +528,7 @@ void open_film(Options& o) {
     throw InvalidInput(
         "A film shows one run, or rigid links beside cables: --film and --viewer can be combined with --body, "
         "--figure, --compare links, --compare pair and --compare ensemble.");
-  o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 4: stress of its links");
+  o.film = vehicle_film(o.viewer, "The tracked vehicle M113 of the thesis: stress of its links");
   if (!o.figure.empty()) o.film_until = std::min(o.end_time, 10.0);
 }
 

@@ -340,7 +340,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (!o.viewer.empty() && o.film_file.empty()) o.film_file = o.out / "film.html";
-    if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 3");
+    if (!o.film_file.empty()) o.film = vehicle_film(o.viewer, "The tracked vehicle M113 of the thesis");
     fs::create_directories(o.out);
     warn_of_drive(o);
     if (o.figure == "table" || o.figure == "all") table_3_4(o);

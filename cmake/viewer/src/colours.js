@@ -7,6 +7,9 @@ const rising = [[46, 30, 92], [45, 86, 142], [36, 135, 141], [66, 180, 116], [16
 /** Colours that colour-blind readers can tell apart [Okabe & Ito 2008], as the library's figures have them. */
 export const palette = ['#0072b2', '#d55e00', '#009e73', '#e69f00', '#cc79a7', '#56b4e9', '#333333', '#b8a800'];
 
+/** Colours of arrows, which no formulation has. */
+export const arrowColours = ['#6a3d9a', '#1f6f78', '#8c510a', '#555b66', '#a6123a'];
+
 /** 256 colours of three numbers in [0, 1], as they are seen (sRGB). */
 function table(stops) {
   const out = new Float32Array(3 * 256);
@@ -84,11 +87,19 @@ export function markText(value, step) {
   return value.toFixed(Math.max(0, Math.ceil(-Math.log10(step) - 1e-9))).replace('-', '−');
 }
 
-/** A number with three digits, for read-outs. */
+/** A number with four digits, for read-outs. */
 export function readOut(value) {
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(2).replace('-', '−').replace('e+', 'e');
   return Number(value.toPrecision(4)).toString().replace('-', '−');
+}
+
+/** Numbers of one quantity side by side: the largest has four digits, and all have the same number of decimals. */
+export function readOuts(values) {
+  const size = Math.max(...values.map(Math.abs));
+  if (!(size >= 1e-3 && size < 1e5)) return values.map(readOut);
+  const decimals = Math.max(0, 3 - Math.floor(Math.log10(size)));
+  return values.map((value) => value.toFixed(decimals).replace('-', '−'));
 }
 
 export function drawBar(canvas, scale) {

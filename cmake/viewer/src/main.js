@@ -43,7 +43,9 @@ class Player {
       requestAnimationFrame(loop);
     };
     requestAnimationFrame(loop);
-    this.clock.playing = true;
+    const at = /[#&]t=([\d.]+)/.exec(location.hash); // of an address such as film.html#t=2.5
+    if (at) this.seek(Number(at[1]));
+    else this.clock.playing = true;
   }
 
   makeControls() {
@@ -110,7 +112,7 @@ class Player {
   tellArrows() {
     for (const set of this.theatre.arrowSets) {
       const one = set.scale * this.theatre.arrowFactor;
-      set.item.textContent = one > 0 ? `${set.label}, 1 m = ${readOut(Number((1 / one).toPrecision(2)))} ${set.unit}` : `${set.label}, all zero`;
+      set.item.textContent = !set.visible ? `show ${set.label}` : one > 0 ? `${set.label}, 1 m = ${readOut(Number((1 / one).toPrecision(2)))} ${set.unit}` : `${set.label}, all zero`;
       set.item.classList.toggle('off', !set.visible);
     }
   }

@@ -1,5 +1,5 @@
 // Histories under the scenes, with a cursor at the time that is shown. Histories of one label share a plot.
-import {markText, marks, palette, readOut} from './colours.js';
+import {markText, marks, palette, readOuts} from './colours.js';
 import {frameAt} from './decode.js';
 
 const left = 62, right = 14, top = 26, bottom = 36;
@@ -132,11 +132,12 @@ export class Plot {
   }
 
   draw(t) {
-    const x = this.x(t);
+    const x = this.x(t), shown = this.curves.map((curve) => valueAt(curve, t));
+    const texts = readOuts(shown.filter((value) => value !== null));
     this.cursor.style.transform = `translateX(${x}px)`;
-    for (const curve of this.curves) {
-      const value = valueAt(curve, t);
-      curve.number.textContent = value === null ? '' : readOut(value);
+    for (const [k, curve] of this.curves.entries()) {
+      const value = shown[k];
+      curve.number.textContent = value === null ? '' : texts.shift();
       curve.dot.hidden = value === null;
       if (value !== null) curve.dot.style.transform = `translate(${x}px, ${this.y(value)}px)`;
     }

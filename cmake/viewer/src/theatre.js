@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
 import {Arrows, longest} from './arrows.js';
-import {marks, palette} from './colours.js';
+import {arrowColours, marks} from './colours.js';
 import {frameAt} from './decode.js';
 import {cornersOf, gridOf, lookAtAll} from './extent.js';
 import {flatMaterial} from './materials.js';
@@ -12,9 +12,9 @@ import {Stage} from './stage.js';
 const background = '#f6f7f9', sheetColour = '#eef0f3', lineColour = '#d3d8de';
 
 /** Edges are smoothed and shadows fall but where a processor draws in place of graphics hardware: there they cost half of the
- *  pictures. An address that ends in #smooth has them there, too. */
+ *  pictures. An address with #smooth has them there, too. */
 function smooths() {
-  if (location.hash === '#smooth') return true;
+  if (/[#&]smooth\b/.test(location.hash)) return true;
   const gl = document.createElement('canvas').getContext('webgl2'), info = gl?.getExtension('WEBGL_debug_renderer_info');
   const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
   gl?.getExtension('WEBGL_lose_context')?.loseContext();
@@ -84,7 +84,7 @@ export class Theatre {
     const shown = new Map(this.film.scenes.flatMap((scene) => scene.arrows.map((set) => [set.label, set.shown])));
     this.arrowSets = labels.map((label, k) => {
       const most = longest(this.film.scenes, label), unit = this.film.scenes.flatMap((s) => s.arrows).find((s) => s.label === label).unit;
-      return {label, unit, most, colour: palette[[1, 2, 4, 3, 0][k % 5]], scale: most > 0 ? 0.18 * this.size / most : 0, visible: shown.get(label)};
+      return {label, unit, most, colour: arrowColours[k % arrowColours.length], scale: most > 0 ? 0.18 * this.size / most : 0, visible: shown.get(label)};
     });
     for (const stage of this.stages)
       stage.arrows = stage.scene.arrows.map((set) => {

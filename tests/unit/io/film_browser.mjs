@@ -128,8 +128,25 @@ async function readOuts(page) {
       const title = canvas.getBoundingClientRect(), numbers = plot.querySelector('figcaption').getBoundingClientRect();
       return numbers.top >= title.top + 18 || numbers.left > title.left + 62 + g.measureText(canvas.ariaLabel).width ? '' : String(canvas.ariaLabel);
     }).filter((name) => name)`);
+    const uneven = await page.ask(`[...document.querySelectorAll('.plot figcaption')].filter((numbers) =>
+      new Set([...numbers.children].map((b) => b.textContent).filter((text) => text && !/e/.test(text)).map((text) => (text.split('.')[1] ?? '').length)).size > 1).length`);
+    check(uneven === 0, 'read-outs of one plot have equally many decimals');
     check(hidden.length === 0, `no read-out stands on the title of its plot, ${across} pixels across ${JSON.stringify(hidden)}`);
   }
+}
+
+/** An address with a time opens the film paused at this time. Hidden arrows are a button that shows them. */
+async function openAtTime(page) {
+  const [begin, end] = await page.ask('polybodyFilm.range'), time = Number((0.6 * begin + 0.4 * end).toFixed(3));
+  await page.open('about:blank');
+  await page.open(`${pathToFileURL(options.film).href}#t=${time}`);
+  check(await page.ask('polybodyFilm.time') === time && !(await page.ask('polybodyFilm.playing')), `#t=${time} opens the film paused at this time`);
+  const entry = `document.querySelector('.arrow')`;
+  if (await page.ask(`!${entry}`)) return;
+  const shown = await page.ask(`${entry}.textContent`);
+  await page.ask(`(${entry}.click(), 0)`);
+  const clicked = await page.ask(`${entry}.textContent`);
+  check(/^show /.test(shown) !== /^show /.test(clicked), `a click on "${shown}" gives "${clicked}"`);
 }
 
 async function pressKeys(page) {
@@ -235,6 +252,7 @@ try {
     await play(page);
     await readOuts(page);
     await pressKeys(page);
+    await openAtTime(page);
     for (const [scene, collection] of options.places.entries()) await comparePlaces(page, scene, resolve(collection));
     if (options.rate) await measureRate(page, Number(options.rate));
     check(page.messages.length === 0, `no error came later ${JSON.stringify(page.messages)}`);
