@@ -5,6 +5,7 @@ Each FILE, relative to the project, is written to TO under the same name.
 Headers
   - belong to the group of their layer (`reference.dox`);
   - have equations, which are indented in comments, on separate lines;
+  - have no line of a comment that begins with + or *, which would be an item of a list: the sign ends the line before it;
   - are read without explicit instantiations, which declare nothing, and without Eigen's traits;
   - have the comment of `double a, b;  ///< ...`, or of one line above it, at each of the names;
   - take the description of a member that a concept requires from docs/extending.md if the member has no comment;
@@ -104,8 +105,18 @@ def say_what_is_asked(lines, i, folder, member):
 
 
 # --- headers: the rest ------------------------------------------------------------------------
+SIGN = re.compile(r"^(\s*///<?) ([+*]) (?=\S)")
 EQUATION = re.compile(r"^(\s*///) {2,3}(?![ -]|\d\.)(.*)$")
 LEFT_OUT = (re.compile(r"^(?:extern )?template (?!<)[^;]*;", re.M), re.compile(r"^template <[^\n]*>\nstruct Eigen::.*?^\};$", re.M | re.S))
+
+
+def without_leading_signs(lines):
+    """A + or * that begins a line of a comment ends the line before: otherwise Doxygen begins a list. Lists have -."""
+    for i, line in enumerate(lines):
+        sign = SIGN.match(line)
+        if sign and i > 0 and re.search(r"///.*\S", lines[i - 1]):
+            lines[i - 1 : i + 1] = f"{lines[i - 1].rstrip()} {sign[2]}", f"{sign[1]} {line[sign.end() :]}"
+    return lines
 
 
 def on_lines_of_their_own(lines):
@@ -142,7 +153,7 @@ def with_equations(lines):
 def header(name, text):
     for pattern in LEFT_OUT:
         text = pattern.sub(lambda m: "\n" * m[0].count("\n"), text)
-    lines = text.split("\n")
+    lines = without_leading_signs(text.split("\n"))
     _, _, folder, *within = name.split("/")  # include/polybody/LAYER/...
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:

@@ -6,6 +6,7 @@ parameters     the comment of a public function names each parameter: as a word,
                Exceptions are parameters whose type describes them, a class, enumeration or concept of the library, and the letters in the table of docs/extending.md with their types
 units          a public member that is a number (double, Vec2, Vec3, Vec6, Mat3, a list of them; not a workspace of run-time size) has its unit in brackets, [m/s], in its own comment or that of its
                type, or a word that explains its absence: relative, unit vector, factor, ratio, share, part, count, ν, ξ, …
+lists          the text before a list of a comment ends with : or a full stop; otherwise a sign that begins a line of a formula became an item
 
 documented_allowed.txt in this folder lists existing violations: `members HEADER COUNT`, `units HEADER COUNT`. It only shrinks, like the lists of
 check.py; --shrink removes fixed entries.
@@ -114,6 +115,19 @@ def unnamed_parameters(folder):
     return found, unused
 
 
+def lists_within_sentences(folder):
+    """(page, end of the text before a list) of each list that interrupts a sentence in the comments of headers."""
+    for file in sorted(folder.glob("*.xml")):
+        if not re.match(r"class|struct|union|concept|namespace|group", file.name):
+            continue
+        for paragraph in xml.parse(file).getroot().iter("para"):
+            before = paragraph.text or ""
+            for part in paragraph:
+                if part.tag in ("itemizedlist", "orderedlist") and before.strip() and before.strip()[-1] not in ":.":
+                    yield file.stem, before.strip()[-40:]
+                before += "".join(part.itertext()) + (part.tail or "")
+
+
 def check(site, shrink):
     faults, found, named = [], Counter(), {}
     for path, line, name, kind in undocumented.rows(site / "warnings"):
@@ -126,6 +140,7 @@ def check(site, shrink):
     for path, name in numbers_without_unit(site / "xml"):
         found[f"units {path}"] += 1
         named.setdefault(f"units {path}", []).append(name)
+    faults += [f"{page}: a list begins within a sentence, after '{before}'." for page, before in lists_within_sentences(site / "xml")]
     unnamed, unused = unnamed_parameters(site / "xml")
     faults += [f"{path}:{line}: {function} does not name its parameter {name}." for path, line, function, name in unnamed]
     faults += [f"{LETTERS.name}: no function has the letter {name} with these types." for name in sorted(unused)]

@@ -69,6 +69,10 @@ with tempfile.TemporaryDirectory() as name:
     require(not unnamed(place, "x", "Does it.", scope="polybody::detail::"), "what is in detail is asked")
     require(not unnamed(place, "x", "Does it.", prot="private"), "what is private is asked")
 
+    for before, wrong in (("The bound S = 2 p", True), ("The rules:", False), ("", False)):
+        (place / "xml/structB.xml").write_text(f"<doxygen><para>{before} <itemizedlist><listitem><para>(1 - p) S</para></listitem></itemizedlist></para></doxygen>")
+        require(bool(list(documented.lists_within_sentences(place / "xml"))) == wrong, f"a list after '{before}' {'passes' if wrong else 'is found'}")
+
 split = prepare.each_with_its_comment
 require(split("  Vec<T, 3> a{}, b = f(1, 2);  ///< (3) [m]") == "  Vec<T, 3> a{}; /**< (3) [m] */ Vec<T, 3> b = f(1, 2); /**< (3) [m] */", "a list is not taken apart")
 require(split("  T a, b;  ///< [m]") == "  T a; /**< [m] */ T b; /**< [m] */", "a type of one letter is not taken apart")
@@ -80,6 +84,10 @@ require(page.startswith("# Speed {#guide_speed}\n\n\\ref page_joints_policies \"
 require("\n# x\n" in page, "a line of code is taken for a heading")
 text = prepare.header("include/polybody/math/a.hpp", "namespace polybody {\n\nextern template struct A<int>;\nint f();\n}  // namespace polybody\n")
 require("@addtogroup floor_math" in text and "extern" not in text and text.count("\n") == 5, "a header is not prepared")
+signs = prepare.header("include/polybody/math/a.hpp", "/// S = 2 p\n/// + (1 - p) S0\n/// * 3.\nstruct A {\n  double x;  ///< a\n             ///< + b\n};\n")
+require(signs.startswith("/// S = 2 p +\n/// (1 - p) S0 *\n/// 3.\nstruct") and "///< a +\n             ///< b\n" in signs, "a sign that begins a line stays there")
+listed = "/// Rules:\n/// - one\n/// - two\n"
+require(prepare.header("include/polybody/math/a.hpp", listed) == listed, "a list is changed")
 above = prepare.header("include/polybody/math/a.hpp", "struct A {\n  /// Sides [m].\n  double a, b;\n};\n").split("\n")
 require(above[1] == "" and above[2].count("/**< Sides [m]. */") == 2, "a comment above a list is not given to each name")
 print("documented_self: as it should be")
