@@ -13,6 +13,7 @@ Headers
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
   - are ordered by the links in the pages of docs/site: \\subpage;
+  - have names of headers, such as `forces/contact.hpp`, as links to the reference;
   - of docs/theory and docs/items have formulas $…$ and $$…$$, which KaTeX draws.
 Lines keep their numbers, so that a warning names the right one.
 
@@ -188,6 +189,25 @@ def formula(tag, tex):
     return f'\\htmlonly<{tag} class="tex">{html.escape(tex).replace("|", "&#124;")}</{tag}>\\endhtmlonly'
 
 
+def header_link(code):
+    """`forces/contact.hpp` as a link to the page of the header; None for other code."""
+    name = code.strip("`").removeprefix("polybody/")
+    if not name.endswith(".hpp") or Path(name).name.startswith("compiled") or not (ROOT / "include/polybody" / name).is_file():
+        return None
+    return f'<tt>\\ref polybody/{name} "{code.strip("`")}"</tt>'
+
+
+def with_links(path, line):
+    """The line with its links as references, also those of the names of headers outside headings and links."""
+    parts = re.split(r"(`[^`]*`)", line)
+    for i, part in enumerate(parts):
+        if i % 2 == 0:
+            parts[i] = LINK.sub(lambda m: link(path, m), part)
+        elif not line.startswith("#") and not parts[i - 1].endswith("["):
+            parts[i] = header_link(part) or part
+    return "".join(parts)
+
+
 def page(path, text):
     own, in_code, in_formula = label(path), False, False
     has_formulas = path.parent.name in ("theory", "items")
@@ -203,7 +223,7 @@ def page(path, text):
             if heading := re.match(r"^(#+) (.*)$", line):
                 name = own if heading[1] == "#" else f"{own}_{anchor(heading[2])}"
                 line = f"{line} {{#{name}}}" if own != "site_index" or heading[1] != "#" else line
-            line = "".join(part if i % 2 else LINK.sub(lambda m: link(path, m), part) for i, part in enumerate(re.split(r"(`[^`]*`)", line)))
+            line = with_links(path, line)
             line = COMMENT.sub("", line)  # Doxygen would also remove the space behind it
             line = IMAGE.sub(r"![\1](\2)", line)  # Doxygen looks for the file in IMAGE_PATH
             if has_formulas:

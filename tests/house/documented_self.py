@@ -81,6 +81,9 @@ require(split("  VecX const &q, &v;  ///< x, y [m]") == "  VecX const &q; /**< x
 require(split("  T s[6], w;  ///< x, y [m]") == "  T s[6]; /**< x, y [m] */ T w; /**< x, y [m] */", "members of a type of one letter lose their comment")
 page = prepare.page(prepare.ROOT / "docs/guide/speed.md", "# Speed\n\n[a](../joints.md#policies) `[b](c.md)` [d](../../README.md)\n\n```cpp\n# x\n```\n")
 require(page.startswith("# Speed {#guide_speed}\n\n\\ref page_joints_policies \"a\" `[b](c.md)` d\n"), "links of a page stay as they are")
+names = prepare.page(prepare.ROOT / "docs/guide/speed.md", "# `math/types.hpp`\n\n`math/types.hpp`, `polybody/math/types.hpp`, `math/none.hpp`, [`math/types.hpp`](x)\n")
+linked = '<tt>\\ref polybody/math/types.hpp "{}"</tt>'.format
+require(f"\n{linked('math/types.hpp')}, {linked('polybody/math/types.hpp')}, `math/none.hpp`, [`math/types.hpp`](x)\n" in names and names.startswith("# `math"), "the name of a header is no link")
 require("\n# x\n" in page, "a line of code is taken for a heading")
 text = prepare.header("include/polybody/math/a.hpp", "namespace polybody {\n\nextern template struct A<int>;\nint f();\n}  // namespace polybody\n")
 require("@addtogroup floor_math" in text and "extern" not in text and text.count("\n") == 5, "a header is not prepared")
