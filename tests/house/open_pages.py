@@ -1,22 +1,22 @@
 #!/usr/bin/env python3
-"""Opens the lessons, item pages, theory pages, class pages and groups of the site in headless Chromium, 1280 and 390 pixels wide.
+"""Opens the pages of docs, classes with formulas and groups of the site in headless Chromium, 1280 and 390 pixels wide.
 
-  tests/house/open_pages.py SITE [CHROMIUM]    SITE is the folder of the HTML pages
+  tests/house/open_pages.py SITE CHROMIUM    SITE is the folder of the HTML pages
 
-Requires that each formula is drawn without an error, that the title fits, and that the text is not wider than the window. The same
-holds for lists of members at the larger width; at the smaller one they extend to the margins.
+Requires that each formula is drawn without an error, that the title fits, that each picture exists, and that text and pictures are not
+wider than the window. The same holds for lists of members at the larger width; at the smaller one they extend to the margins.
 """
 
 import html
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 WIDTHS = (1280, 390)
+KINDS = ("guide", "howto", "items", "lessons", "page", "theory", "validated")  # page: all other folders of docs
 HARNESS = """<!DOCTYPE html><meta charset="utf-8"><pre id="found"></pre><script>
 const pages = %s, widths = %s;
 async function open(url, width) {
@@ -42,6 +42,10 @@ async function open(url, width) {
         faults.push(name + "the text is wider than the window: " + e.textContent.slice(0, 60));
         break;
       }
+    for (const e of page.querySelectorAll(".contents img")) {
+      if (e.complete && !e.naturalWidth) faults.push(name + "a picture is missing: " + e.getAttribute("src"));
+      else if (e.scrollWidth > box.clientWidth + 1) faults.push(name + "a picture is wider than the window: " + e.getAttribute("src"));
+    }
   }
   frame.remove();
   return faults;
@@ -56,11 +60,8 @@ async function open(url, width) {
 
 def main():
     site = Path(sys.argv[1]).resolve()
-    browser = sys.argv[2] if len(sys.argv) > 2 else shutil.which("chromium")
-    if not browser:
-        print("chromium is not installed: no page is opened.")
-        return
-    pages = [p for kind in ("items", "lessons", "theory") for p in sorted(site.glob(f"{kind}_*.html"))]
+    browser = sys.argv[2]
+    pages = [p for kind in KINDS for p in sorted(site.glob(f"{kind}_*.html"))]
     pages += [p for p in sorted(site.glob("*polybody_1_1*.html")) if 'class="tex"' in p.read_text(encoding="utf-8")]
     pages += sorted(site.glob("group__floor__*.html"))
     with tempfile.TemporaryDirectory() as folder:
