@@ -54,8 +54,8 @@ Figure over_time(Comparison const& c, std::string const& title, std::string cons
 }
 
 /// Adds a figure of the constraint violations over time, on a logarithmic axis, for the runs with a positive violation.
-/// Adds no figure if there is no such run. Violations below the limit min(1e-16, 1e-6 of the largest violation) are
-/// drawn at the limit. Zeros are omitted.
+/// Adds no figure if there is no such run. Violations below the limit 1e-16 are drawn at the limit; if no violation
+/// exceeds 1e-16, the limit is 1e-6 of the largest violation. Zeros are omitted.
 template <class = void>
 void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
                     std::vector<Figure>& figures) {
@@ -67,9 +67,10 @@ void add_violations(Comparison const& c, std::string const& title, std::string c
   if (figure.curves.empty()) return;
   double all = 0.0;
   for (Curve const& curve : figure.curves) all = std::max(all, largest(curve));
+  double const limit = all > 1e-16 ? 1e-16 : 1e-6 * all;
   for (Curve& curve : figure.curves)
     for (double& y : curve.y)
-      if (y > 0.0) y = std::max(y, std::min(1e-16, 1e-6 * all));
+      if (y > 0.0) y = std::max(y, limit);
   figures.push_back(std::move(figure));
 }
 

@@ -185,6 +185,18 @@ TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
   EXPECT_FALSE(fs::exists(folder / "free" / "violations.gp"));
 }
 
+TEST_F(ComparisonReport, ViolationsAreCutAtRoundOff) {
+  Comparison c = oscillators();
+  std::vector<Figure> figures;
+  c.runs[0].violations[5].position = 1e-21;
+  detail::add_violations(c, "Violation", "[m]", &Violation::position, figures);
+  EXPECT_EQ(*std::ranges::min_element(figures.back().curves[0].y), 1e-16);
+  for (Violation& violation : c.runs[0].violations) violation.position = 1e-18;
+  c.runs[0].violations[5].position = 1e-30;
+  detail::add_violations(c, "Violation", "[m]", &Violation::position, figures);
+  EXPECT_NEAR(*std::ranges::min_element(figures.back().curves[0].y), 1e-24, 1e-30);
+}
+
 /// Blocks of a data file by their comments, as times and values.
 std::map<std::string, std::vector<std::array<double, 2>>> blocks_of(fs::path const& file) {
   std::map<std::string, std::vector<std::array<double, 2>>> blocks;
