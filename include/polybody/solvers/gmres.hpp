@@ -3,7 +3,6 @@
 /// Generalised minimal residual method with restarts, for unsymmetric equations with a preconditioner [Saad & Schultz
 /// 1986].
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
