@@ -32,7 +32,7 @@ constexpr char const* connect_refusal() {
            "supports rigid bodies only. Use another policy for other bodies.";
   else if constexpr (LinearPolicy<P> && !eliminable)
     return "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the ground. "
-           "Markers of Rigid, Ffr and spatial Lrvf are not linear: use Constraint for them.";
+           "Markers of Rigid, Ffr, Se3Beam and spatial Lrvf are not linear: use Constraint for them.";
   else if constexpr (!SufficientFirstMarker<J, A> || !SufficientSecondMarker<J, B>)
     return "This joint needs a marker with axes, but this body provides only a point or a tangent. Use a joint that "
            "needs only points, such as Spherical. To clamp a cable, use a Revolute about its tangent, with the cable's "

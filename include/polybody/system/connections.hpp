@@ -373,7 +373,7 @@ constexpr void require_pairing() {
       "JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use another policy for other bodies.");
   static_assert(!LinearPolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
                 "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the "
-                "ground. Markers of Rigid, Ffr and spatial Lrvf are not linear: use Constraint for them.");
+                "ground. Markers of Rigid, Ffr, Se3Beam and spatial Lrvf are not linear: use Constraint for them.");
   static_assert(LinearIfRequired<P, G>,
                 "AncfLinear supports Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   static_assert(
