@@ -124,14 +124,22 @@ class Se3Beam : public Beam<CircularArc> {
  public:
   /// Beam from the straight bar, with n elements of equal length.
   /// \throws InvalidInput for n outside [1, 10⁷], a placement that leaves the plane, or a bar without GA.
-  static Se3Beam from(Bar const& bar, Index n) { return Se3Beam(Base::from(bar, n)); }
+  template <class = void>  // compiled only if used
+  static Se3Beam from(Bar const& bar, Index n) {
+    return Se3Beam(Base::from(bar, n));
+  }
   /// Beam from the straight bar, with the number of elements of `mesh`.
-  static Se3Beam from(Bar const& bar, BarMesh const& mesh = {}) { return Se3Beam(Base::from(bar, mesh)); }
+  template <class = void>  // compiled only if used
+  static Se3Beam from(Bar const& bar, BarMesh const& mesh = {}) {
+    return Se3Beam(Base::from(bar, mesh));
+  }
   /// Beam of n elements along `curve` whose undeformed shape is straight (`Beam`).
+  template <class = void>  // compiled only if used
   static Se3Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     return Se3Beam(Base::from(bar, n, curve));
   }
   /// Beam of n elements with the undeformed shape `curve` (`Beam`).
+  template <class = void>  // compiled only if used
   static Se3Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     return Se3Beam(Base::naturally_curved(bar, n, curve));
   }
@@ -183,6 +191,7 @@ class Se3Beam : public Beam<CircularArc> {
   }
   /// Load stiffness of the wrench `w`: with the signs s = (−1, 1) of the nodes,
   ///   ∂²(f·r₀)/∂r_i∂θ_j = s_i s_j Z′ᵀf,  ∂²(f·r₀)/∂θ_i∂θ_j = s_i s_j f·Z″Δr, and −y (n·f) h hᵀ, h = (1 − ξ, ξ).
+  template <class = void>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Arc<double> const a(p.xi, this->of_element(p.element, q), Element<double>::Zero());
     double const pull[] = {a.dz[0] * w.f[0] + a.dz[1] * w.f[1], a.dz[0] * w.f[1] - a.dz[1] * w.f[0]};
@@ -199,6 +208,7 @@ class Se3Beam : public Beam<CircularArc> {
   }
 
  private:
+  template <class = void>  // compiled only if used
   explicit Se3Beam(Base const& base) : Base(base) {}
 
   /// Axis at a point of an element.
