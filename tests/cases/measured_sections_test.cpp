@@ -240,6 +240,34 @@ TYPED_TEST(LinearSections, OneDampingTimeDampsEveryMode) {
   }
 }
 
+// Matrices of a steel bar in newtons, millimetres and tonnes that are given as if they were in SI units: the reports of
+// a run and of statics name the first body with such a section, and a run in SI units has no warning.
+TYPED_TEST(LinearSections, WrongUnitsGiveAWarning) {
+  auto const warnings = [](double length) {
+    Section6 section = uncoupled().in_units(length, 1.0);
+    section.mass(3, 3) = section.mass(4, 4) + section.mass(5, 5);
+    Model<Bodies<TypeParam>, Joints<Joint<Weld, Constraint>>> model;
+    auto const arm = model.add(TypeParam::from({.length = 1.0, .section = section}, 2), "arm");
+    auto const tip = model.add(
+        TypeParam::from({.length = 1.0, .section = section, .placement = {.origin = Vec3(1, 0, 0)}}, 2), "tip");
+    model.connect(Joint<Weld, Constraint>{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
+    model.connect(Joint<Weld, Constraint>{}, arm.at(1.0), tip.at(0.0), "splice");
+    State x = model.reference_state();
+    auto all = equilibrium(model, x).warnings;
+    for (auto const& warning : simulate(model, x, GeneralisedAlpha{}, {.end_time = 1e-3, .step = 1e-3}).run().warnings)
+      all.push_back(warning);
+    return all;
+  };
+  EXPECT_TRUE(warnings(1.0).empty());
+  auto const wrong = warnings(1e3);
+  ASSERT_EQ(wrong.size(), 2u);
+  EXPECT_TRUE(
+      wrong[0].starts_with("Body \"arm\": the section matrices at s = 0 m imply E = 1.36e+04 N/m², A = 1.47e+03 "
+                           "m² and ρ = 2.04e-09 kg/m³."))
+      << wrong[0];
+  EXPECT_EQ(wrong[1], wrong[0]);
+}
+
 // Different damping times: the power of the damping forces is never positive.
 TYPED_TEST(RigidSections, DampingNeverAddsEnergy) {
   Section6 section = composite();

@@ -181,6 +181,11 @@ Section6 section_of_bmodes(double s) {
   return section.placed(0, 0, interpolated(&Station::twist, x) * std::numbers::pi / 180.0);
 }
 
+// Thin shells of glass fibre imply densities down to 34 kg/m³.
+TEST(RotatingBlades, SectionsOfBModesAreInSiUnits) {
+  for (double s = 0.5; s < 33.25; s += 1.0) EXPECT_EQ(detail::unit_warning(section_of_bmodes(s), s), "");
+}
+
 /// The five lowest frequencies [Hz] of this blade at 60 rpm, with n elements in each element of BModes.
 template <class B>
 VecX twisted_frequencies(Index n) {

@@ -144,10 +144,10 @@ struct RunReport : RunCounts {
   /// Joints with redundant constraint equations at the last start. The motion is determined, but the distribution of
   /// the load over the reactions is not.
   std::vector<std::string> redundant = {};
-  /// Warnings as text. At the start: a singular configuration whose velocities do not determine a branch of the motion,
-  /// and a step beyond the stability limit of an explicit integrator for the compliant joints. In a step: a singular
-  /// configuration at which the velocities jumped, and axial forces of at least 5 % of the buckling load that a beam
-  /// neglects. At the end: energy that no work explains.
+  /// Warnings as text. At the start: section matrices that are probably not in SI units, a singular configuration whose
+  /// velocities do not determine a branch of the motion, and a step beyond the stability limit of an explicit
+  /// integrator for the compliant joints. In a step: a singular configuration at which the velocities jumped, and axial
+  /// forces of at least 5 % of the buckling load that a beam neglects. At the end: energy that no work explains.
   std::vector<std::string> warnings = {};
 
   /// Adds the warning `sentence` if it is not empty.

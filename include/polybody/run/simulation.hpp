@@ -153,8 +153,10 @@ class Simulation {
 
   /// Reduced initial state: projects the velocities, and makes the checks that require the full model.
   [[gnu::cold]] void reduced_start();
-  /// Warns of a singular initial configuration, and of a step that is too long for compliant joints.
+  /// Warns of section matrices that are not in SI units, of a singular initial configuration, and of a step that is too
+  /// long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
+    warn_of_units(full(), report_.warnings);
     report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, driver_.step_length()));
   }

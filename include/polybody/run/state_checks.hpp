@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Checks that a state has the sizes of a model, finite values, and quaternions of norm one.
+/// Checks that a state has the sizes of a model, finite values, and quaternions of norm one. Warnings of a model.
 
 #include <polybody/system/state.hpp>
 #include <polybody/system/system.hpp>
@@ -31,6 +31,17 @@ template <class = void>
   ModelLayout const& full = system.layout();
   full.watch.require_unchanged();
   detail::require_sizes(x, full.coordinates, full.velocities, full.rows);
+}
+
+/// Adds the warnings of bodies whose section matrices are probably not in SI units, without repetitions.
+template <class = void>
+[[gnu::cold]] void warn_of_units(System const& system, std::vector<std::string>& warnings) {
+  std::string_view last;
+  for (BodyLayout const& body : system.layout().bodies) {
+    if (!body.unit_warning.empty() && body.unit_warning != last)
+      warnings.push_back(sentence_of({"Body \"", body.name, "\": ", body.unit_warning}));
+    last = body.unit_warning;
+  }
 }
 
 /// Requires coordinates that an increment of zero (⊞ 0) does not change. A quaternion whose norm is not one would

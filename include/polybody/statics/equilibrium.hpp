@@ -356,6 +356,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
     detail::relax_unstable(path, start, options, report);
   else if (crosses && path.states == 0 && report.negative_pivots == 0)
     detail::follow_without_crossing(path, start, options, report);
+  warn_of_units(system, report.warnings);
   x = std::move(trial);
   return report;
 }

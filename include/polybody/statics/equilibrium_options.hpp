@@ -44,7 +44,8 @@ struct EquilibriumReport {
   int negative_pivots = 0;
   double limit_point = 0.0;  ///< load factor of a limit point or branch point on the path from the start; 0: none found
   bool relaxed = false;      ///< true: Newton's method did not converge; a damped motion found the state
-  /// Warnings about an unstable state, and about an equilibrium that is not on the path from the start.
+  /// Warnings about an unstable state, about an equilibrium that is not on the path from the start, and about section
+  /// matrices that are probably not in SI units.
   std::vector<std::string> warnings = {};
 };
 

@@ -193,6 +193,7 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
       double const l = e.body.element_length(), EA = e.body.constants().EA, EI = e.body.constants().EI;
       out.bodies.back().stretch_ratio = EI > 0.0 ? EA * l * l / EI : 0.0;
     }
+    if constexpr (requires { e.body.unit_warning(); }) out.bodies.back().unit_warning = e.body.unit_warning();
   }
   if constexpr (WithoutGeometricStiffening<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
@@ -201,7 +202,6 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
         return static_cast<B const*>(body)->axial_share(q, v, a, g, loads);
       };
 }
-
 template <class B, StateScalar T>
 void BodyKernels<B, T>::place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data) {
   kept.poses.resize(pool.entries.size());

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <polybody/bodies/shared/coordinate_units.hpp>
@@ -141,11 +142,12 @@ struct BodyLayout {
   /// Null for bodies that do not satisfy `WithoutGeometricStiffening`.
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
-  CoordinateUnits units = {};  ///< units of coordinates and velocities
-  std::uint64_t made_in = 0;   ///< serial number of the model to which the body was added
-  bool lossless = false;       ///< true if the body does not dissipate energy, because it is rigid
-  bool changes = false;        ///< true if the mass depends on time
-  double stretch_ratio = 0.0;  ///< EA l²/EI of a bar with elements of length l [1]; 0 for other bodies
+  CoordinateUnits units = {};          ///< units of coordinates and velocities
+  std::uint64_t made_in = 0;           ///< serial number of the model to which the body was added
+  bool lossless = false;               ///< true if the body does not dissipate energy, because it is rigid
+  bool changes = false;                ///< true if the mass depends on time
+  double stretch_ratio = 0.0;          ///< EA l²/EI of a bar with elements of length l [1]; 0 for other bodies
+  std::string_view unit_warning = {};  ///< warning of section matrices that are probably not in SI units, in the body
 };
 
 /// Markers of a joint, position of its constraint equations among those of the model, and its properties.

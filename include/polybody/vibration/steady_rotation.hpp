@@ -251,6 +251,7 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   }
   problem.frame.require_turning_rows(problem.trial);
   problem.require_balance();
+  warn_of_units(system, report.warnings);
   x = rotating_state(system, problem.trial, rotation);
   return report;
 }

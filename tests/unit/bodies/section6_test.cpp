@@ -1,11 +1,16 @@
 // Sections given by matrices: laws of the bodies that accept couplings, offsets and sections along the bar; refusals.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
+#include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/ancf_coupled_line.hpp>
+#include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
+#include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
 
 #include <polybody/testing/flexible_body_laws.hpp>
@@ -198,6 +203,73 @@ TEST(Section6, AnEmptyFunctionIsRefused) {
   Bar const bar{.length = 1.0, .section = SectionAlong{}};
   EXPECT_TRUE(has(refusal([&] { Se3Beam::from(bar, 2); }), "empty function"));
   EXPECT_TRUE(has(refusal([&] { (void)constants(bar); }), "function of the arc length"));
+}
+
+// The solid of a rectangle of steel, 50 mm × 30 mm, has E, A and ρ of the rectangle in each system of units, also with
+// the axis beside the rectangle and turned. Its units are the force, the length and f t²/l for the mass.
+TEST(Section6, WarningNamesTheSolidThatTheMatricesImply) {
+  double const a = 0.05, b = 0.03, area = a * b, e = 2e11, g = 8e10, rho = 7800.0;
+  Vec6 c, m;
+  c << e * area, g * area, g * area, g * a * b * b * b / 5.0, e * a * b * b * b / 12.0, e * b * a * a * a / 12.0;
+  m << rho * area, rho * area, rho * area, 0.7, 0.3, 0.4;
+  Section6 const si{.stiffness = c.asDiagonal(), .mass = m.asDiagonal()};
+  auto const text = [&](double length, double force) {
+    return detail::unit_warning(si.in_units(length, force).placed(0.7 * length * a, -0.4 * length * a, 0.3), 0.25);
+  };
+  char const* const limits =
+      " kg/m³. In SI units E lies in [10000, 1e+15] and ρ in [5, 10000000]. Convert the matrices with "
+      "Section6::in_units.";
+  std::string const begin = "the section matrices at s = 0.25 m imply E = ";
+  double const inch = 0.0254, pound = 4.4482216152605;
+  EXPECT_EQ(text(1.0, 1.0), "");
+  EXPECT_EQ(text(1e3, 1.0), begin + "2e+05 N/m², A = 1.5e+03 m² and ρ = 7.8e-09" + limits);
+  EXPECT_EQ(text(1e-3, 1.0), begin + "2e+17 N/m², A = 1.5e-09 m² and ρ = 7.8e+15" + limits);
+  EXPECT_EQ(text(1.0 / inch, 1.0 / pound), begin + "2.9e+07 N/m², A = 2.33 m² and ρ = 0.00073" + limits);
+  EXPECT_EQ(text(inch, pound), begin + "1.38e+15 N/m², A = 9.68e-07 m² and ρ = 8.34e+10" + limits);
+}
+
+// A carbon tube with R/t = 100, a rope of 200 steel wires, a steel bar with ten times its own mass on it, rubber, and
+// the sections of the tests are in SI units.
+TEST(Section6, NoWarningOfOtherSolids) {
+  auto const of = [](double ea, double ei, double mass) {
+    Vec6 c, m;
+    c << ea, 0.3 * ea, 0.3 * ea, 0.7 * ei, ei, ei;
+    m << mass, mass, mass, 1.0, 1.0, 1.0;
+    return detail::unit_warning({.stiffness = c.asDiagonal(), .mass = m.asDiagonal()}, 0.0);
+  };
+  using std::numbers::pi;
+  double const tube = 2.0 * pi * 0.05 * 0.0005, wire = pi * 5e-4 * 5e-4, square = 0.02 * 0.02;
+  EXPECT_EQ(of(1e11 * tube, 1e11 * tube * 0.5 * 0.05 * 0.05, 1600.0 * tube), "");
+  EXPECT_EQ(of(200 * 2e11 * wire, 200 * 2e11 * wire * 0.25 * 5e-4 * 5e-4, 200 * 7800.0 * wire), "");
+  EXPECT_EQ(of(2e11 * square, 2e11 * square * square / 12.0, 11.0 * 7800.0 * square), "");
+  EXPECT_EQ(of(1e6 * square, 1e6 * square * square / 12.0, 1100.0 * square), "");
+  for (Section6 const& section : {composite().in_units(0.0254, 4.4482216152605), uncoupled(),
+                                  box_beam().in_units(0.0254, 4.4482216152605), composite().in_units(0.05, 0.02)})
+    EXPECT_EQ(detail::unit_warning(section, 0.0), "");
+}
+
+// Each body that accepts matrices has the warning, also for a section that is wrong only at the end of the bar.
+TEST(Section6, EveryBodyHasTheWarning) {
+  Section6 section = uncoupled();
+  section.mass(3, 3) = section.mass(4, 4) + section.mass(5, 5);
+  Bar const right{.length = 1.0, .section = section}, wrong{.length = 1.0, .section = section.in_units(1e3, 1.0)},
+      wrong_at_the_end{.length = 1.0,
+                       .section = [=](double s) { return s < 0.9 ? section : section.in_units(1e3, 1.0); }};
+  auto const holds = [&]<class B>(B const*, bool varies) {
+    EXPECT_EQ(B::from(right, 2).unit_warning(), "");
+    EXPECT_TRUE(has(std::string(B::from(wrong, 2).unit_warning()), "at s = 0 m imply E = "));
+    EXPECT_TRUE(!varies || has(std::string(B::from(wrong_at_the_end, 2).unit_warning()), "at s = 1 m imply E = "));
+  };
+  holds(static_cast<Se3Beam*>(nullptr), true);
+  holds(static_cast<Lrvf<>*>(nullptr), true);
+  holds(static_cast<AncfBeam<CoupledLine>*>(nullptr), true);
+  holds(static_cast<Ffr*>(nullptr), true);
+  holds(static_cast<AncfBeam<>*>(nullptr), false);
+  holds(static_cast<AncfCable<>*>(nullptr), false);
+  holds(static_cast<planar::AncfCable<>*>(nullptr), false);
+  holds(static_cast<planar::Lrvf*>(nullptr), false);
+  holds(static_cast<planar::Se3Beam*>(nullptr), false);
+  holds(static_cast<planar::Ffr*>(nullptr), false);
 }
 
 }  // namespace section6_test

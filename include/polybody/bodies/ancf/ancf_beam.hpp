@@ -62,6 +62,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   double length() const { return bar_.length; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string const& unit_warning() const { return unit_warning_; }
 
   /// Point at the distance s along the axis from the first end, and (y, z) from the axis [m].
   /// \throws InvalidInput for s outside the bar.
@@ -348,6 +350,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
   Bar bar_;
   BarConstants constants_;
+  std::string unit_warning_;
   double l_ = 0.0;
   std::vector<Placement> nodes_;             ///< placements of the nodes, in the axes of the bar
   std::vector<ancf::Reference> references_;  ///< one if all elements are alike, otherwise one per element
@@ -356,7 +359,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
 template <class Elastic>
 AncfBeam<Elastic>::AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight)
-    : Chain(n), bar_(bar), constants_(constants_of(bar)) {
+    : Chain(n), bar_(bar), constants_(constants_of(bar)), unit_warning_(detail::unit_warning(bar)) {
   std::string const name = Elastic::name;
   require_elements(n, name);
   bool alike = straight;

@@ -75,6 +75,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string const& unit_warning() const { return unit_warning_; }
 
   /// Point at the distance s along the axis from the first end [m].
   /// \throws InvalidInput for s outside the bar.
@@ -266,6 +268,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   BarConstants constants_;
   double length_;
   double l_;
+  std::string unit_warning_;
   Mat<RealFor<Strain>, 4, 4> mass_ = detail::zeros<decltype(mass_)>();  ///< mass matrix of each component
   Vec4 weight_ = detail::zeros<Vec4>();  ///< generalised weight per unit of gravity, for each component
   std::vector<double> reference_;
@@ -279,7 +282,8 @@ AncfCable<Strain, axial_points, bending_points>::AncfCable(Bar const& bar, BarCo
                  Bending(c, bar.damping, bar.length / double(n))}}),
       constants_(c),
       length_(bar.length),
-      l_(bar.length / double(n)) {
+      l_(bar.length / double(n)),
+      unit_warning_(detail::unit_warning(bar)) {
   for (GaussPoint const& g : gauss<4>) {
     ShapeValues<4> const s = hermite_shape(g.xi, l_);
     double const mass = g.weight * l_ * c.mass_per_length;

@@ -259,6 +259,7 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
       forces.push_back(bar.pretension);
     }
     s.bar_lengths.push_back(bar.length);
+    if (s.unit_warning.empty()) s.unit_warning = detail::unit_warning(bar);
   }
   s.clear();
   std::vector<Eigen::Triplet<double>> stiffness, damping;

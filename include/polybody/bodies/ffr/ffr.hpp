@@ -90,6 +90,8 @@ class Ffr {
   /// Length of the first bar [m].
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string_view unit_warning() const { return points_ ? points_->structure().unit_warning : std::string_view(); }
 
   /// Point at the distance s along bar number `bar` (counted from 0) from its first end, at (y, z) from the axis of the
   /// bar [m].
@@ -378,13 +380,7 @@ class Ffr {
     if (numbers.size() < workspace_size()) numbers.resize(workspace_size());
     return {made_of_->integrals, made_of_->stack, numbers.data()};
   }
-  FfrPoints const& made() const {
-    if (!points_)
-      throw InvalidInput("ffr.integrals_only", {ErrorObject{"Ffr"},
-                                                ": this body was made from integrals only, so it has no nodes and no "
-                                                "bars. Give each point as a Point with its matrices S, R."});
-    return *points_;
-  }
+  FfrPoints const& made() const { return require_points(points_.get(), "Ffr"); }
 
   struct Constants {
     FfrIntegrals integrals;

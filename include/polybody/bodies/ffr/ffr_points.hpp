@@ -280,4 +280,15 @@ class FfrPoints {
   std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ; empty with stiffening or without beams
 };
 
+/// Points of a body.
+/// \throws InvalidInput naming the type `body` for a body without points, which was made from integrals only.
+template <class = void>
+[[gnu::cold]] FfrPoints const& require_points(FfrPoints const* points, char const* body) {
+  if (!points)
+    throw InvalidInput("ffr.integrals_only", {ErrorObject{body},
+                                              ": this body was made from integrals only, so it has no nodes and no "
+                                              "bars. Give each point as a Point with its matrices S, R."});
+  return *points;
+}
+
 }  // namespace polybody

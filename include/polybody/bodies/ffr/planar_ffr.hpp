@@ -49,12 +49,15 @@ class Ffr : public AddingCoordinates {
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
+    std::string unit_warning = polybody::detail::unit_warning(bar);
     if (c.GJ == 0.0) c.GJ = c.EI;  // any torsional stiffness, because the plane excludes torsion
     bar.section = std::monostate{};
     bar.material.reset();
     bar.shear_factor.reset();
     bar.constants = c;
-    return structure_of(bar, n);
+    Structure s = structure_of(bar, n);
+    s.unit_warning = std::move(unit_warning);
+    return s;
   }
   /// Body of a structure in the plane of x and y. Build the basis `shapes` with `restrict_to_plane` or `in_plane`.
   /// \throws InvalidInput for a basis that leaves the plane.
@@ -86,6 +89,8 @@ class Ffr : public AddingCoordinates {
   /// Length of the first bar [m].
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string_view unit_warning() const { return points_ ? points_->structure().unit_warning : std::string_view(); }
 
   /// Point at the distance s along bar number `bar` (counted from 0) from its first end, and y from the axis [m].
   /// \throws InvalidInput for s outside the bar, a bar that does not exist, and a body that is not made of bars.
@@ -382,13 +387,7 @@ class Ffr : public AddingCoordinates {
     out.J = T(i_.inertia);
   }
 
-  FfrPoints const& made() const {
-    if (!points_)
-      throw InvalidInput("ffr.integrals_only", {ErrorObject{"planar::Ffr"},
-                                                ": this body was made from integrals only, so it has no nodes and no "
-                                                "bars. Give each point as a Point with its matrices S, R."});
-    return *points_;
-  }
+  FfrPoints const& made() const { return require_points(points_.get(), "planar::Ffr"); }
 
   FfrIntegrals i_;
   FfrTerms terms_;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Sparse>
@@ -55,6 +56,7 @@ struct Structure {
   std::array<std::array<VecX, 3>, 3> moment;  ///< ∫ρ u₀ₖ S_l (N)
   std::vector<Beam> beams;                    ///< empty for a structure from matrices
   std::vector<double> bar_lengths;            ///< length of each bar [m]
+  std::string unit_warning = {};              ///< warning of section matrices that are probably not in SI units
 
   Index size() const { return per_node * Index(nodes.size()); }  ///< number N of nodal coordinates
   /// Mass matrix M = Σ ∫ρ S_kᵀ S_k.

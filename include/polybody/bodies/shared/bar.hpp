@@ -210,6 +210,21 @@ template <class = void>  // compiled only if used
           .polar_inertia = c.inertia(0, 0)};
 }
 
+/// Warning of section matrices that are probably not in SI units, at the first of five arc lengths with such a section;
+/// empty for other bars.
+template <class = void>  // compiled only if used
+[[gnu::cold]] std::string unit_warning(Bar const& bar) {
+  auto const* const along = std::get_if<SectionAlong>(&bar.section);
+  std::string found;
+  if (!along || !*along) return found;
+  int const last = along->target<Section6>() ? 0 : 4;
+  for (int i = 0; i <= last && found.empty(); ++i) {
+    double const s = 0.25 * i * bar.length;
+    found = unit_warning((*along)(s), s);
+  }
+  return found;
+}
+
 /// Checks a damping time [s].
 /// \throws InvalidInput naming `what` unless 0 ≤ `time` ≤ `largest_number`.
 template <class = void>  // compiled only if used

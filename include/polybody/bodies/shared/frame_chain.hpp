@@ -48,6 +48,8 @@ class FrameChain {
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string const& unit_warning() const { return unit_warning_; }
 
   Index elements() const { return n_; }
   Index coordinates() const { return 7 * (n_ + 1); }
@@ -140,7 +142,8 @@ class FrameChain {
         constants_(sections.constants),
         n_(n),
         length_(bar.length),
-        l_(bar.length / double(n)) {
+        l_(bar.length / double(n)),
+        unit_warning_(detail::unit_warning(bar)) {
     for (auto const& section : sections.elements) sixth_.push_back(section.mass * l_ / 6.0);
     for (auto const& section : sections.nodes) {
       rotary_.push_back(section.inertia);
@@ -273,6 +276,7 @@ class FrameChain {
   double length_, l_;
   std::vector<double> sixth_;  ///< Aρ l/6 of all elements, or of each [kg]
   std::vector<Mat3> rotary_;   ///< J of half an element at all nodes, or at each [kg m²]
+  std::string unit_warning_;
 };
 
 }  // namespace polybody

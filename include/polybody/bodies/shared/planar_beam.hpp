@@ -135,6 +135,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   double length() const { return length_; }
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
+  /// Warning of section matrices of the bar that are probably not in SI units; empty if there is none.
+  std::string const& unit_warning() const { return unit_warning_; }
 
   /// Point at the distance s along the axis from the first end, and y from the axis [m].
   /// \throws InvalidInput for s outside the bar.
@@ -374,6 +376,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   BarConstants constants_;
   double length_;
   double l_;
+  std::string unit_warning_;
   Vec2 origin_;
   double angle_;
   std::vector<double> natural_;  ///< nodal coordinates of a curved undeformed shape
@@ -389,6 +392,7 @@ Beam<Theory>::Beam(Bar const& bar, BarConstants const& c, Index n)
       constants_(c),
       length_(bar.length),
       l_(bar.length / double(n)),
+      unit_warning_(polybody::detail::unit_warning(bar)),
       origin_(bar.placement.origin.head<2>()),
       angle_(bar.placement.planar_angle(Theory::name)) {
   // M = ∫ (Aρ SᵀS + Iρ h hᵀ) dx with θ̇ = h·ė, gravity_ = Aρ ∫ Sᵀ dx; exact for the polynomials of the theory

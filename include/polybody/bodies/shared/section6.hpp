@@ -25,6 +25,8 @@ namespace polybody {
 /// Damping is proportional to the stiffness C: with the damping times τ, the damping part of the section forces is
 ///   D (ε˙, …, κ˙_z),  D_ij = √τ_i C_ij √τ_j,
 /// so that D is symmetric and positive semidefinite.
+///
+/// Runs and `equilibrium` warn of matrices that imply a modulus or a density far from those of solids (`unit_warning`).
 struct Section6 {
   Mat<double, 6, 6> stiffness = detail::zeros<Mat<double, 6, 6>>();  ///< (6×6) stiffness [N], [N m], [N m²]
   Mat<double, 6, 6> mass = detail::zeros<Mat<double, 6, 6>>();       ///< (6×6) mass per length [kg/m], [kg], [kg m]
@@ -205,6 +207,38 @@ template <class = void>  // compiled only if used
   out.stiffness = at_point(section.stiffness, out.centre);
   out.damping = at_point(damping, out.centre);
   return out;
+}
+
+/// Limits of E [N/m²] and ρ [kg/m³] of the solid that section matrices in SI units imply.
+///
+/// The lower limits are for thin walls. A tube of radius R and wall t implies an area that is 0.95 R/t times too large,
+/// so that E and ρ are as many times too small. Rubber has 1e6 N/m². Carbon tubes of 1500 kg/m³ reach 5 kg/m³ only if
+/// R/t is 314. No section of one solid has an area below 0.95 A, because √(det I) ≥ A²/4π.
+///
+/// The upper limits are a thousand times E of diamond, and 400 times ρ of osmium. This margin is for ropes (n parallel
+/// wires imply an area that is n times too small), masses without stiffness, and very large axial stiffnesses.
+/// Matrices in newtons, millimetres and tonnes that are taken for SI units have a density that is 1e12 times too small,
+/// and matrices in pounds and inches one that is 1e7 times too small.
+inline constexpr double young_limits[] = {1e4, 1e15}, density_limits[] = {5.0, 1e7};
+
+/// Warning of matrices that are probably not in SI units; empty for other sections. The matrices need not be valid.
+///
+/// The implied solid is a square with the radius of gyration r of the section: A = a² = 12 r², E = EA/A, ρ = m/A. With
+/// the bending stiffness K (2×2) about the tension centre, r² = √(det K)/EA, which gives A of any rectangle exactly.
+template <class = void>  // compiled only if used
+[[gnu::cold]] std::string unit_warning(Section6 const& section, double s) {
+  auto const& c = section.stiffness;
+  double const ea = c(0, 0);
+  auto const k = [&](int i, int j) { return c(i, j) - c(i, 0) * c(0, j) / ea; };  // without axial force
+  double const area = 12.0 * std::sqrt(k(4, 4) * k(5, 5) - k(4, 5) * k(5, 4)) / ea, young = ea / area,
+               density = section.mass(0, 0) / area;
+  auto const outside = [](double x, double const(&limits)[2]) { return x < limits[0] || x > limits[1]; };
+  if (!outside(young, young_limits) && !outside(density, density_limits)) return {};
+  auto const rounded = [](double x) { return number(x, 3); };
+  return sentence_of({"the section matrices at s = ", s, " m imply E = ", rounded(young), " N/m², A = ", rounded(area),
+                      " m² and ρ = ", rounded(density), " kg/m³. In SI units E lies in [", young_limits[0], ", ",
+                      young_limits[1], "] and ρ in [", density_limits[0], ", ", density_limits[1],
+                      "]. Convert the matrices with Section6::in_units."});
 }
 
 }  // namespace detail
