@@ -133,7 +133,7 @@ class ReductionOf {
       for (auto const& e : pool.entries) {
         bodies.push_back({.name = e.name, .layout = B::layout, .q0 = e.q0, .v0 = e.v0});
         bodies.back().by_newton_euler = moves_by_newton_euler<B>;
-        read_masses(e.body, bodies.back());
+        detail::read_masses(e.body, bodies.back());
       }
       for (auto const& m : pool.markers) {
         BodyAttachment& h = attachments[std::size_t(m.published)];
@@ -188,28 +188,17 @@ class ReductionOf {
     return Index(tree_.ends.size()) - 1;
   }
 
-  /// Reads mass and inertia from the constant mass matrix of the body.
-  template <class B>
-  static void read_masses(B const& body, TreeBody& out) {
-    constexpr int n = B::element_columns;
-    double q[7] = {};
-    body.reference(std::span<double>(q, std::size_t(body.coordinates())));
-    Mat<double, n, n> m;
-    body.mass(0, std::span<double const>(q, std::size_t(body.coordinates())), m);
-    out.mass = m(0, 0);
-    constexpr int turns = n / 2;  // 3 of 6; 1 of 3
-    for (int i = 0; i < turns; ++i)
-      for (int j = 0; j < turns; ++j) out.inertia(3 - turns + i, 3 - turns + j) = m(n - turns + i, n - turns + j);
-  }
-
   /// Requires links without loops. \throws InvalidInput if a joint closes a loop; the message names the first such
   /// joint in the order of connection.
   static void require_tree(std::size_t bodies, Sequence<Link> const& links);
 
   /// Builds the tree breadth first from the ground, then from one body of each group without connection to the ground.
   /// Every joint with joint coordinates carries one body. If `all` is true, bodies without such joints become roots.
-  /// The tree also moves the free nodes of each chain with a carried node; they are roots with `free_motions`.
   void build_tree(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
+
+  /// Adds the roots without joints: all bodies if `all` is true, and the free nodes of each chain with a carried node,
+  /// which have `free_motions`. \param place index of each body in the tree; −1: none
+  void add_roots(Sequence<TreeBody> const& bodies, bool all, Sequence<Index>& place);
 
   void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
     Sequence<bool> dependent_v(std::size_t(velocities), false), dependent_q(std::size_t(coordinates), false);
@@ -228,23 +217,13 @@ class ReductionOf {
       TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0
                                  ? nullptr
                                  : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
-      bool moves_nodes = false;
-      for (Index k = 0; k < x.nodes; ++k)
-        if (Index const at = in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)]; at >= 0) {
-          TreeBody& node = tree_.bodies[std::size_t(at)];
-          node.qn = coordinates_ + k * x.nq / x.nodes;
-          node.vn = velocities_ + k * x.nv / x.nodes;
-          moves_nodes = moves_nodes || node.motions.count > 0 || node.carried();
-        }
       if (body && x.nodes == 0) {
         body->qn = coordinates_;
         body->vn = velocities_;
       }
-      if (moves_nodes) {
+      if (number_nodes(x, in_tree)) {
         place.kind = ReducedPosition::Kind::carried;
-        for (Index k = 0; k < x.nodes; ++k)
-          number_node(tree_.bodies[std::size_t(in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)])]);
-      } else if (body && body->carried()) {
+      } else if (body && x.nodes == 0 && body->carried()) {
         place.kind = ReducedPosition::Kind::carried;
         coordinates_ += body->motions.coordinates();
         velocities_ += body->motions.velocities();
@@ -275,6 +254,22 @@ class ReductionOf {
     }
   }
 
+  /// Numbers the unknowns of the nodes of a chain if the tree moves it; otherwise only those of nodes that carry
+  /// bodies. Returns true in the first case. \param in_tree index in the tree of the node with each first velocity; −1:
+  /// none
+  bool number_nodes(Extent const& x, Sequence<Index> const& in_tree) {
+    bool moved = false;
+    for (Index k = 0; k < x.nodes; ++k)
+      if (Index const at = in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)]; at >= 0) {
+        TreeBody& node = tree_.bodies[std::size_t(at)];
+        node.qn = coordinates_ + k * x.nq / x.nodes;
+        node.vn = velocities_ + k * x.nv / x.nodes;
+        moved = moved || node.motions.count > 0 || node.carried();
+      }
+    for (Index k = 0; k < x.nodes && moved; ++k)
+      number_node(tree_.bodies[std::size_t(in_tree[std::size_t(x.v0 + k * x.nv / x.nodes)])]);
+    return moved;
+  }
   /// Numbers the unknowns of a node: the joint coordinates of a carried node, or those of a free node in the full
   /// vectors.
   void number_node(TreeBody& node) {
@@ -380,6 +375,11 @@ void ReductionOf<T>::build_tree(Sequence<TreeBody> const& bodies, Sequence<Link>
     grow(order_.size() - 1);
   }
   order_.clear();
+  add_roots(bodies, all, place);
+}
+
+template <class T>
+void ReductionOf<T>::add_roots(Sequence<TreeBody> const& bodies, bool all, Sequence<Index>& place) {
   Sequence<bool> moved(bodies.size(), false);  // by chain
   for (TreeBody const& node : tree_.bodies)
     if (node.chain >= 0 && node.carried()) moved[std::size_t(node.chain)] = true;

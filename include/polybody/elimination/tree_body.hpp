@@ -120,6 +120,20 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
 
 namespace detail {
 
+/// Reads mass and inertia from the constant mass matrix of the body.
+template <class B>
+void read_masses(B const& body, TreeBody& out) {
+  constexpr int n = B::element_columns;
+  double q[7] = {};
+  body.reference(std::span<double>(q, std::size_t(body.coordinates())));
+  Mat<double, n, n> m;
+  body.mass(0, std::span<double const>(q, std::size_t(body.coordinates())), m);
+  out.mass = m(0, 0);
+  constexpr int turns = n / 2;  // 3 of 6; 1 of 3
+  for (int i = 0; i < turns; ++i)
+    for (int j = 0; j < turns; ++j) out.inertia(3 - turns + i, 3 - turns + j) = m(n - turns + i, n - turns + j);
+}
+
 /// Matrix m of doubles, converted to scalar T. If T is double, returns m itself.
 template <class T, class M>
 decltype(auto) in_scalar(M const& m) {

@@ -75,7 +75,8 @@ JointMotions motions_of(G const& geometry) {
   }
 }
 
-/// Motions of a free frame in space, or in the plane. Their coordinates and velocities are those of a rigid body.
+/// Motions of a free frame in space, or in the plane if `in_plane`. Their coordinates and velocities are those of a
+/// rigid body.
 template <class = void>  // compiled only if used
 JointMotions free_motions(bool in_plane) {
   JointMotions out;

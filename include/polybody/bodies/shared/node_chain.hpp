@@ -38,6 +38,20 @@ class NodeChain : public AddingCoordinates {
   Index first_column(P const& p) const {
     return first_column(p.element);
   }
+  /// Number of the node in whose section the point p is; −1 between nodes. Only for nodes (x, y, θ) (`HasFrameNodes`).
+  template <class P>
+  static Index node_of(P const& p)
+    requires(columns == 3)
+  {
+    return p.xi < 1e-12 ? p.element : p.xi > 1.0 - 1e-12 ? p.element + 1 : -1;
+  }
+  /// Vector from the node of p to p, in the axes of its section [m].
+  template <class P>
+  static Vec3 node_arm(P const& p)
+    requires(columns == 3)
+  {
+    return {0.0, p.y, 0.0};
+  }
   /// Copy of the point p for a chain that consists only of the element of p.
   template <class P>
     requires requires(P p) { p.element; }

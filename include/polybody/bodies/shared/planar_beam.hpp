@@ -147,19 +147,6 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return {e, x - double(e), y};
   }
 
-  /// Number of the node in whose section `p` is; −1 between nodes (`HasFrameNodes`).
-  static Index node_of(Point const& p)
-    requires(gradients == 0)
-  {
-    return p.xi < 1e-12 ? p.element : p.xi > 1.0 - 1e-12 ? p.element + 1 : -1;
-  }
-  /// Vector from the node of `p` to p, in the axes of its section [m].
-  Vec3 node_arm(Point const& p) const
-    requires(gradients == 0)
-  {
-    return {0.0, p.y, 0.0};
-  }
-
   /// Shape functions s_i of r = Σ s_i e_i, and their derivatives with respect to arc length. e_i are the entries 2i and
   /// 2i + 1 of the coordinates of an element. Only for theories with a smooth axis.
   auto axis_shape(double xi) const
