@@ -15,7 +15,10 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
+
+#include "support/measured_sections.hpp"
 
 namespace polybody {
 namespace {
@@ -88,6 +91,14 @@ TEST(Heap, SpatialLrvfTakesNone) {
   expect_no_heap(Lrvf<RelativeRotation, SelectiveQuadrature>::from(bar, 3));
 }
 TEST(Heap, Se3BeamTakesNone) { expect_no_heap(Se3Beam::from(bar, 3)); }
+TEST(Heap, PlanarSe3BeamTakesNone) { expect_no_heap(planar::Se3Beam::from(bar, 3)); }
+TEST(Heap, SectionsFromMatricesTakeNone) {
+  Section6 section = composite().placed(0.02, -0.03);
+  section.damping_times << 1e-3, 4e-3, 2e-3, 7e-3, 3e-3, 5e-3;
+  Bar const measured{.length = 1.2, .section = section};
+  expect_no_heap(Se3Beam::from(measured, 3));
+  expect_no_heap(Lrvf<RelativeRotation>::from(measured, 3));
+}
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }
 TEST(Heap, EngineeringCableTakesNone) { expect_no_heap(planar::AncfCable<planar::EngineeringStrain>::from(bar, 3)); }
