@@ -59,6 +59,55 @@ TYPED_TEST(MeasuredBeam, MarkersMoveWithTheSections) {
   this->load_stiffness_is_the_derivative_of_the_pulled_wrench();
 }
 
+/// Floating frame whose sections have couplings, offsets and damping times: constant along a bar of two elements, with
+/// or without geometric stiffening.
+template <bool stiffening>
+struct FrameCase {
+  static constexpr double deformation = stiffening ? 0.03 : 1.0;  // second-order theory
+  static constexpr double stiffness = 2.7e4;                      // EA
+  static constexpr double length = 1.3;
+  static Section6 section(bool damps) {
+    Section6 s = composite().in_units(0.05, 0.02).placed(0.02, -0.03, 0.4);
+    if (damps) s.damping_times << 0.1, 0.4, 0.2, 0.7, 0.3, 0.5;
+    return s;
+  }
+  static Ffr made(Placement const& placement, bool damps) {
+    return Ffr::from({.length = length, .section = section(damps), .placement = placement}, 2,
+                     {.stiffening = stiffening});
+  }
+  static Placement placement() { return Placement::at({0.4, -0.3, 0.8}, {0.5, -1.0, 0.7}); }
+  static Ffr body() { return made(placement(), true); }
+  static Ffr undamped() { return made(placement(), false); }
+  static Ffr elsewhere() { return made(Placement::at({-7.0, 3.0, 5.0}, {1.0, -0.4, 2.0}), true); }
+  static std::vector<Ffr::Point> points() {
+    Ffr const b = body();
+    return {b.at(0.0), b.at(0.31 * length), b.at(length), b.at(0.77 * length, 0.03, -0.05)};
+  }
+  static double mass() { return section(false).mass(0, 0) * length; }
+  static Vec3 centre() {  // the composite section has its centre of mass on its own axis
+    return placement().origin + placement().axes * Vec3(0.5 * length, 0.02, -0.03);
+  }
+};
+bool const frames_obey[] = {obeys<FrameCase<false>, BodyLaws, FlexibleBodyLaws>("FfrOfMatrices"),
+                            obeys<FrameCase<true>, BodyLaws, FlexibleBodyLaws>("StiffenedFfrOfMatrices")};
+
+// Sections that vary along the bar.
+template <>
+Ffr Case<Ffr>::body(Bar const& bar) {
+  return Ffr::from(bar, 3, {.stiffening = false});
+}
+using MeasuredFrame = MeasuredBeam<Ffr>;
+TEST_F(MeasuredFrame, ForcesAndMarkersAreDerivatives) {
+  elastic_force_is_the_gradient_of_the_strain_energy();
+  tangent_is_the_derivative_of_the_force_by_position();
+  tangent_is_the_derivative_of_the_force_by_speed();
+  weight_is_the_gradient_of_its_energy();
+  twist_is_jacobian_times_velocities();
+  jacobian_is_the_derivative_of_the_frame();
+  bias_is_the_acceleration_at_constant_velocities();
+  load_stiffness_is_the_derivative_of_the_pulled_wrench();
+}
+
 TEST(Section6, BadMatricesAreRefused) {
   auto const refused = [](Section6 const& section, char const* text) {
     Bar const bar{.length = 1.0, .section = section};
