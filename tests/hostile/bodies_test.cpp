@@ -7,6 +7,7 @@
 #include <polybody/se3_beam.hpp>
 
 #include "runs.hpp"
+#include "support/measured_sections.hpp"
 
 namespace polybody::hostile_bodies_test {
 namespace {
@@ -75,6 +76,26 @@ TEST(HostileParameters, OfBars) {
   tried += try_bars<Ffr>("Ffr", [](Bar const& b) { return Ffr::from(b, 2); });
   tried += try_bars<planar::Ffr>("planar::Ffr", [](Bar const& b) { return planar::Ffr::from(b, 2); });
   std::cout << tried << " numbers of bars\n";
+}
+
+/// Entries of the matrices and damping times of a section with couplings, an offset and damping.
+template <class B, class Made>
+int try_sections(std::string const& type, Made const& made) {
+  Section6 section = composite().placed(0.02, -0.03);
+  section.damping_times.setConstant(1e-3);
+  return try_hostile(
+      section, type + " of a Section6",
+      [&](Section6 const& s) { swing<B>([&] { return made(Bar{.length = 10.0, .section = s}); }); }, some);
+}
+
+TEST(HostileParameters, OfSections) {
+  int tried = 0;
+  tried += try_sections<Se3Beam>("Se3Beam", [](Bar const& b) { return Se3Beam::from(b, 2); });
+  tried += try_sections<Lrvf<>>("Lrvf", [](Bar const& b) { return Lrvf<>::from(b, 2); });
+  tried += try_sections<AncfBeam<CoupledLine>>("AncfBeam<CoupledLine>",
+                                               [](Bar const& b) { return AncfBeam<CoupledLine>::from(b, 2); });
+  tried += try_sections<Ffr>("Ffr", [](Bar const& b) { return Ffr::from(b, 2); });
+  std::cout << tried << " numbers of sections\n";
 }
 
 TEST(HostileParameters, OfBodies) {

@@ -243,6 +243,8 @@ inline constexpr auto words_of<Placement> =
 template <>
 inline constexpr auto words_of<Damping> = words("axial damping", "shear damping", "bending damping");
 template <>
+inline constexpr auto words_of<Section6> = words("stiffness matrix", "mass matrix", "damping time");
+template <>
 inline constexpr auto words_of<Bar> =
     words("length", "section", "material", "constants", "placement", "damping", "pretension", "shear factor");
 template <>
