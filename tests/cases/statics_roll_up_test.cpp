@@ -3,6 +3,7 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ using namespace polybody;
 
 namespace statics_roll_up_test {
 
-using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf;
+using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf, planar::Se3Beam;
 using std::numbers::pi;
 
 /// Beam of Wallin 2016, Fig. 2.9, with the length of Simo & Vu-Quoc (S1). EA and GA have the order of their robot
@@ -90,6 +91,34 @@ TEST(RollUp, ThesisFigure29StaticValues) {
   held(arc("θ of the tip, thesis' Fig. 2.9 [rad]", body), c.tip()[2], 3.601440576, 5e-10);
   held(arc("x of the tip, thesis' Fig. 2.9 [m]", body), c.tip()[0], -1.232317522 * chord, 1e-9);
   held(arc("y of the tip, thesis' Fig. 2.9 [m]", body), c.tip()[1], 5.264893204 * chord, 1e-9);
+}
+
+// The elements of Se3Beam are arcs, so that each mesh is the exact arc, at its nodes and between them. One element
+// turns by less than 2π.
+TEST(RollUp, Se3BeamIsTheArcWithAnyNumberOfElements) {
+  Bar const bar = half_circle();
+  struct {
+    Index n;
+    double theta;
+  } const arcs[] = {{1, pi / 2}, {1, pi}, {1, 1.9 * pi}, {2, pi / 2}, {2, 2 * pi}, {3, 2 * pi}, {10, pi}, {16, 2 * pi}};
+  for (auto const& [n, theta] : arcs) {
+    Cantilever<Se3Beam> const c = rolled<Se3Beam>(bar, n, theta);
+    for (double const part : {0.2, 0.5, 1.0}) {
+      Vec3 const exact(std::sin(part * theta) / theta * bar.length, (1 - std::cos(part * theta)) / theta * bar.length,
+                       part * theta);
+      held_within(arc("points of the arc (x, y [m], θ)", "planar Se3Beam, 1 to 16 elements"),
+                  (c.at(part * bar.length) - exact).norm(), 1e-10 * bar.length,
+                  {equals("n", double(n)) + equals(", θ", theta) + equals(", s/L", part), bar.length});
+    }
+  }
+}
+TEST(RollUp, Se3BeamHasTheStaticValuesOfThesisFigure29) {
+  Cantilever<Se3Beam> const c(Se3Beam::from(thesis(), 2), {.moment = 3e4}, {});
+  Vec3 const strain = c.bar.body().strains<0>(c.bar.body().at(4.5), coordinates_of(c.model, c.x, c.bar));
+  held_within(arc("strain and curvature of the thesis' Fig. 2.9 [1/m]", "planar Se3Beam, 2 elements"),
+              (strain - Vec3(0, 0, 0.360144058)).norm(), 5e-10, {.scale = 0.36});
+  held_within(arc("tip (x, y [m], θ) of the thesis' Fig. 2.9", "planar Se3Beam, 2 elements"),
+              (c.tip() - Vec3(-1.232317522, 5.264893204, 3.601440576)).norm(), 2e-9, {.scale = 5.0});
 }
 
 template <class Strain>
