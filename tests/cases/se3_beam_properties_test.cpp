@@ -1,6 +1,7 @@
-// Properties of Se3Beam in statics and dynamics: states of constant strain with one element, absence of locking, order
-// two, symmetry of the tangent, invariance and conservation.
+// Properties of Se3Beam and planar::Se3Beam in statics: states of constant strain with one element, absence of locking,
+// order two. Se3Beam also in dynamics: symmetry of the tangent, invariance and conservation.
 
+#include <polybody/bodies/se3/planar_se3_beam.hpp>
 #include <polybody/bodies/se3/se3_beam.hpp>
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/cantilever.hpp"
 #include "support/spatial_cantilever.hpp"
 #include "support/straight_se3_bar.hpp"
 
@@ -26,45 +28,89 @@ using Rod = SpatialCantilever<Se3Beam>;
 double const length = 1.3;
 Vec6 const stiffness = (Vec6() << 900, 300, 350, 25, 60, 40).finished();
 
+// ---- beams in space and in the plane
+
+template <class B>
+struct Se3Beams : testing::Test {};
+using SpaceAndPlane = testing::Types<Se3Beam, planar::Se3Beam>;
+TYPED_TEST_SUITE(Se3Beams, SpaceAndPlane);
+
+template <class B>
+constexpr bool flat = B::world == World::plane;
+
+/// Cantilever in equilibrium. For a planar beam, the loads are in the plane.
+template <class B>
+auto loaded(B const& body, TipLoad const& load, int steps = 1) {
+  EquilibriumOptions const options{.load_steps = steps};
+  if constexpr (flat<B>)
+    return Cantilever<B>(body, {.force = load.force.head<2>(), .axes = load.axes, .moment = load.moment[2]}, options);
+  else
+    return SpatialCantilever<B>(body, load, options);
+}
+/// Beam whose undeformed shape is `curve`.
+template <class B>
+B curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
+  if constexpr (flat<B>)
+    return B::naturally_curved(bar, n, curve);
+  else
+    return B::from(bar, n, curve);
+}
+template <class Cantilever>
+Frame<double> section_of(Cantilever const& rod, double s) {
+  return frame(rod.model, rod.x, rod.bar.at(s));
+}
+/// Displacement of the tip.
+template <class Cantilever>
+Vec3 moved(Cantilever const& rod) {
+  auto const end = rod.bar.at(rod.bar.body().length());
+  return position(rod.model, rod.x, end) - position(rod.model, rod.model.reference_state(), end);
+}
+
 // ---- equilibrium of constant strain
 
 // Roll-up by a tip moment M = θ EI/L about any axis across the bar: an arc of radius L/θ. One element reaches nearly
-// half a circle, three elements the full one.
-TEST(Se3BeamEquilibrium, OneElementRollsUpToAnArc) {
+// half a circle, three elements the full one. In the plane one element reaches nearly a full circle.
+TYPED_TEST(Se3Beams, OneElementRollsUpToAnArc) {
   Bar const bar{.length = 1.0,
                 .constants = BarConstants{.EA = 300, .EI = 1, .mass_per_length = 1, .GA = 200, .GJ = 0.7}};
   struct {
     Index elements;
     double theta;
-  } const arcs[] = {{1, 0.5 * pi}, {1, 0.95 * pi}, {2, 1.5 * pi}, {3, 2.0 * pi}, {5, 4.0 * pi}};
+  } const arcs[] = {
+      {1, 0.5 * pi}, {1, (flat<TypeParam> ? 1.9 : 0.95) * pi}, {2, 1.5 * pi}, {3, 2.0 * pi}, {5, 4.0 * pi}};
   for (auto const& [n, theta] : arcs)
     for (double const axis : {0.0, 1.3}) {
+      if (flat<TypeParam> && axis != 0.0) continue;
       Vec3 const about(0, -std::sin(axis), std::cos(axis)), across(0, std::cos(axis), std::sin(axis));
-      Rod const rod(Se3Beam::from(bar, n), {.moment = theta * about}, {.load_steps = 20});
+      auto const rod = loaded(TypeParam::from(bar, n), {.moment = theta * about}, 20);
       for (double const s : {0.3, 0.5, 1.0}) {
         Vec3 const exact = std::sin(theta * s) / theta * Vec3::UnitX() + (1 - std::cos(theta * s)) / theta * across;
-        EXPECT_LT((rod.section(s).r - exact).norm(), 1e-10) << n << ", " << theta << ", " << s;
-        EXPECT_LT((rod.section(s).A - exp_so3<double>(theta * s * about)).norm(), 1e-9) << n << ", " << theta;
+        Frame<double> const section = section_of(rod, s);
+        EXPECT_LT((section.r - exact).norm(), 1e-10) << n << ", " << theta << ", " << s;
+        EXPECT_LT((section.A - exp_so3<double>(theta * s * about)).norm(), 1e-9) << n << ", " << theta;
       }
     }
 }
 
 // A rod with the strains (Γ, K) along its whole length is in equilibrium if n = α K and m = α (e₁ + Γ) + β K. With the
-// reference curvature K₀ = K − C⁻¹ m and the shear Γ = C⁻¹ n, one element under the end wrench (n, m) is the helix.
-TEST(Se3BeamEquilibrium, OneElementOfInitialCurvatureBecomesAHelix) {
-  double const alpha = 12.0, beta = 6.0;
-  Vec3 const k(0.9, 0.3, 1.6), n = alpha * k, gamma = n.cwiseQuotient(stiffness.head<3>());
+// reference curvature K₀ = K − C⁻¹ m and the shear Γ = C⁻¹ n, one element under the end wrench (n, m) is the helix. In
+// the plane α = 0: an arc of another curvature.
+TYPED_TEST(Se3Beams, OneElementOfInitialCurvatureBecomesAHelix) {
+  double const alpha = flat<TypeParam> ? 0.0 : 12.0, beta = 6.0;
+  Vec3 const k = flat<TypeParam> ? Vec3(0, 0, 1.6) : Vec3(0.9, 0.3, 1.6), n = alpha * k,
+             gamma = n.cwiseQuotient(stiffness.head<3>());
   Vec3 const m = alpha * (Vec3::UnitX() + gamma) + beta * k, k0 = k - m.cwiseQuotient(stiffness.tail<3>());
   Vec6 const free = six(0, 0, 0, k0[0], k0[1], k0[2]), strains = six(gamma[0], gamma[1], gamma[2], k[0], k[1], k[2]);
   for (Index const elements : {1, 2, 7}) {
     auto const curve = [&](double s) { return helix(free, s); };
-    Rod const rod(Se3Beam::from(straight_bar(), elements, curve), {.force = n, .moment = m, .axes = LoadAxes::marker},
-                  {.load_steps = 10});
+    auto const rod = loaded(curved<TypeParam>(straight_bar(), elements, curve),
+                            {.force = n, .moment = m, .axes = LoadAxes::marker}, 10);
     for (double const s : {0.3 * length, length}) {
       Placement const exact = helix(strains, s);
-      EXPECT_LT((rod.section(s).r - exact.origin).norm(), 1e-9) << elements;
-      EXPECT_LT((rod.section(s).A - exact.axes).norm(), 1e-9) << elements;
-      Vec6 const forces = rod.bar.body().section_forces(rod.bar.body().at(s), rod.coordinates());
+      Frame<double> const section = section_of(rod, s);
+      EXPECT_LT((section.r - exact.origin).norm(), 1e-9) << elements;
+      EXPECT_LT((section.A - exact.axes).norm(), 1e-9) << elements;
+      Vec6 const forces = section_forces(rod.model, rod.x, rod.bar.at(s));
       EXPECT_LT((forces - six(n[0], n[1], n[2], m[0], m[1], m[2])).norm(), 1e-7) << elements;
     }
   }
@@ -72,7 +118,12 @@ TEST(Se3BeamEquilibrium, OneElementOfInitialCurvatureBecomesAHelix) {
 
 // ---- locking, order, symmetry
 
+/// Row of a transverse load: z in space, y in the plane.
+template <class B>
+constexpr int transverse = flat<B> ? 1 : 2;
+
 /// Tip deflection of a cantilever of slenderness L/h under a small force, divided by F L³/3EI + F L/GA.
+template <class B>
 double relative_deflection(double slenderness, Index n) {
   double const h = 1.0 / slenderness, young = 1e9;
   Bar const bar{.length = 1.0,
@@ -80,28 +131,29 @@ double relative_deflection(double slenderness, Index n) {
                 .material = Material{.density = 1000, .young = young, .poisson = 0.3}};
   BarConstants const c = constants(bar);
   double const force = 1e-4 * 3 * c.EI;
-  Rod const rod(Se3Beam::from(bar, n), {.force = {0, 0, force}}, {});
-  return rod.tip_displacement()[2] / (force / (3 * c.EI) + force / c.GA);
+  auto const rod = loaded(B::from(bar, n), {.force = force * Vec3::Unit(transverse<B>)});
+  return moved(rod)[transverse<B>] / (force / (3 * c.EI) + force / c.GA);
 }
 
 // The curvature is constant in an element: w = F L³/3EI (1 − 1/4n²) + F L/GA for any slenderness, without reduced
 // quadrature.
-TEST(Se3BeamMesh, ThinBeamsDoNotLock) {
+TYPED_TEST(Se3Beams, ThinBeamsDoNotLock) {
   for (double const slenderness : {10.0, 1e2, 1e3, 1e4, 1e5})
     for (Index const n : {1, 2, 4, 16}) {
       double const shear =
           3 * 1e9 / 12 * std::pow(1 / slenderness, 2) / (10 * 1.3 / (12 + 11 * 0.3) * 1e9 / 2.6);  // 3EI/GA L²
       double const expected = (1.0 - 0.25 / double(n * n) + shear) / (1.0 + shear);
-      EXPECT_NEAR(relative_deflection(slenderness, n), expected, 1e-6) << slenderness << ", " << n;
+      EXPECT_NEAR(relative_deflection<TypeParam>(slenderness, n), expected, 1e-6) << slenderness << ", " << n;
     }
 }
 
-// Follower and dead loads in space, initial curvature: errors decrease with l².
-TEST(Se3BeamMesh, ErrorsAreOfSecondOrder) {
-  auto const tip = [](Index n) {
-    auto const arc = [](double s) { return helix(six(0, 0, 0, 0.4, -0.5, 1.1), s); };
-    return Rod(Se3Beam::from(straight_bar(), n, arc), {.force = {3, -8, 15}, .moment = {1, 2, -2}}, {.load_steps = 4})
-        .tip();
+// Dead loads, initial curvature: errors decrease with l².
+TYPED_TEST(Se3Beams, ErrorsAreOfSecondOrder) {
+  bool const plane = flat<TypeParam>;
+  auto const tip = [&](Index n) {
+    auto const arc = [&](double s) { return helix(plane ? six(0, 0, 0, 0, 0, 1.1) : six(0, 0, 0, 0.4, -0.5, 1.1), s); };
+    TipLoad const load{.force = {3, -8, plane ? 0.0 : 15.0}, .moment = plane ? Vec3(0, 0, -2) : Vec3(1, 2, -2)};
+    return Vec3(section_of(loaded(curved<TypeParam>(straight_bar(), n, arc), load, 4), length).r);
   };
   Vec3 const a = tip(8), b = tip(16), c = tip(32), d = tip(64), limit = (4.0 * d - c) / 3.0;
   EXPECT_NEAR((a - limit).norm() / (b - limit).norm(), 4.0, 0.1);
@@ -110,17 +162,20 @@ TEST(Se3BeamMesh, ErrorsAreOfSecondOrder) {
 
 // Distributed load p over the whole cantilever: w = p L⁴/8EI + p L²/2GA and the support force p L, for small
 // deflections. The load acts at points of the helices.
-TEST(Se3BeamMesh, DistributedLoadBendsTheCantilever) {
+TYPED_TEST(Se3Beams, DistributedLoadBendsTheCantilever) {
   Bar const bar = straight_bar();
   BarConstants const c = constants(bar);
-  double const p = 1e-3, exact = p * std::pow(length, 4) / (8 * *c.EI_y) + p * length * length / (2 * *c.GA_z);
+  double const p = 1e-3, bending = flat<TypeParam> ? double(c.EI) : *c.EI_y,
+               shear = flat<TypeParam> ? double(c.GA) : *c.GA_z;
+  double const exact = p * std::pow(length, 4) / (8 * bending) + p * length * length / (2 * shear);
+  Vec3 const force = p * Vec3::Unit(transverse<TypeParam>);
   auto const deflection = [&](Index n) {
-    Rod rod(Se3Beam::from(bar, n), {}, {});
-    apply_distributed(rod.model, rod.bar, PointForce<>{.force = {0, 0, p}}, {.from = 0.0, .to = length, .pieces = n});
+    auto rod = loaded(TypeParam::from(bar, n), {});
+    apply_distributed(rod.model, rod.bar, PointForce<>{.force = force}, {.from = 0.0, .to = length, .pieces = n});
     rod.x = rod.model.reference_state();
     equilibrium(rod.model, rod.x);
-    EXPECT_NEAR(reaction(rod.model, rod.x, rod.clamp).f[2], -p * length, 1e-12);
-    return rod.tip_displacement()[2];
+    EXPECT_NEAR(reaction(rod.model, rod.x, rod.clamp).f[transverse<TypeParam>], -p * length, 1e-12);
+    return moved(rod)[transverse<TypeParam>];
   };
   double const coarse = deflection(8), fine = deflection(16);
   EXPECT_NEAR((coarse - exact) / (fine - exact), 4.0, 0.01);

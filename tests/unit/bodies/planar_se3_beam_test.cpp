@@ -106,6 +106,11 @@ TEST(PlanarSe3Beam, RefusesWhatItCannotMean) {
   EXPECT_TRUE(has(refusal([&] { (void)planar::Se3Beam::from(bar, 3); }), "planar::Se3Beam: the shear stiffness GA"));
   EXPECT_TRUE(has(refusal([&] { (void)planar::Se3Beam::from(Case::bar(), 0); }), "at least one element"));
   EXPECT_TRUE(has(refusal([&] { (void)planar::Se3Beam::from(Case::bar(), 3).at(2.0); }), "lies outside the body"));
+  auto const still = [](double) { return Placement{}; };  // elements of length zero
+  EXPECT_TRUE(has(refusal([&] { (void)planar::Se3Beam::from(Case::bar(), 3, still); }),
+                  "planar::Se3Beam: element 1, counted from 1, has a strain of -1, but the limit is 0.1"));
+  EXPECT_TRUE(has(refusal([&] { (void)planar::Se3Beam::naturally_curved(Case::bar(), 3, still); }),
+                  "Parametrise the reference curve by its arc length"));
 }
 
 }  // namespace planar_se3_beam_test
