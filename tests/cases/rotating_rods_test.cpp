@@ -3,6 +3,7 @@
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/se3/se3_beam.hpp>
 
 #include "support/rotating_cantilever.hpp"
 
@@ -25,6 +26,10 @@ void converges(std::vector<RotatingCantilever> const& rows, Index n, double shar
 TEST(RotatingCantilever, LargeRotationVectorConvergesToTheTable) {
   converges<Lrvf<>>({std::begin(rotating_cantilevers), std::end(rotating_cantilevers)}, 12, 5e-4,
                     "Lrvf, 12 and 24 elements extrapolated");
+}
+TEST(RotatingCantilever, HelicoidalBeamConvergesToTheTable) {
+  converges<Se3Beam>({std::begin(rotating_cantilevers), std::end(rotating_cantilevers)}, 12, 5e-4,
+                     "Se3Beam, 12 and 24 elements extrapolated");
 }
 // Ω = 2, 6 and 12: the frequencies of each angular velocity take one second of computation.
 TEST(RotatingCantilever, FullAncfBeamConvergesToTheTable) {
