@@ -11,6 +11,7 @@
 #include <polybody/forces/loads.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
@@ -136,6 +137,27 @@ TEST(SpatialClamp, RefusesAPinAcrossTheTangent) {
                                   cable.at(0.0), "pin");
                   }),
                   "\"pin\": the second marker has a tangent but no axes"));
+}
+
+// Joints whose second marker provides only a point have their axis in any direction. A cable with one clamped end rests
+// on such a joint across its tangent: force 3/8 m g. A sag of 1e-5 m changes it by 1e-6 of itself.
+TEST(SpatialProp, HoldsACableAcrossItsTangent) {
+  using Plane = Joint<PointInPlane, Constraint>;
+  using Line = Joint<PointOnLine, Constraint>;
+  using Slide = Joint<PrescribedTranslation<Constant>, Constraint>;
+  auto const force = [](auto const& prop) {
+    Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e7, .EI = 1e4, .mass_per_length = 2.0}};
+    Model<Bodies<Cable>, Joints<Clamp, Plane, Line, Slide>> model{Gravity{0, 0, -10}};
+    auto const cable = model.add(Cable::from(bar, 8), "cable");
+    model.connect(Clamp{Revolute{.axis = Vec3::UnitX()}, {}}, model.ground().at({0, 0, 0}), cable.at(0.0), "clamp");
+    auto const joint = model.connect(prop, model.ground().at({1, 0, 0}), cable.at(1.0), "prop");
+    State x = model.reference_state();
+    equilibrium(model, x);
+    return reaction(model, x, joint).f[2];
+  };
+  EXPECT_NEAR(force(Plane{PointInPlane{.normal = Vec3::UnitZ()}, {}}), 7.5, 1e-5);
+  EXPECT_NEAR(force(Line{PointOnLine{.axis = Vec3::UnitY()}, {}}), 7.5, 1e-5);
+  EXPECT_NEAR(force(Slide{{.law = {.value = 0.0}, .axis = Vec3::UnitZ()}, {}}), 7.5, 1e-5);
 }
 
 // S11: elastic catenary, 10 m of 10 N/m with supports at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The
