@@ -1,8 +1,9 @@
-// One vehicle with tracks of five formulations.
+// One vehicle with tracks of six formulations.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <polybody/io/vtk.hpp>
+#include <polybody/se3_beam.hpp>
 
 #include "m113/visual.hpp"
 #include "support/held.hpp"
@@ -73,6 +74,7 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
   alike(ride<Rigid<>>(m113::bushing_pin(m113::pin_stiffness), 0.6, 8.0), "bushing");
   alike(ride<AncfCable<>>(AncfLinear{}, 0.6, 8.0), "ANCF");
   alike(ride<Rigid<>>(JointCoordinates{}, 0.6, 8.0), "recursive");
+  alike(ride<Se3Beam>(JointCoordinates{}, 0.6, 8.0), "Se3Beam, JointCoordinates");
 }
 
 // Table 3.4 counts four Euler parameters for each body. With them, all bodies have the same motion as with unit
