@@ -48,6 +48,15 @@ struct Mixed {
   std::vector<BodyHandle<Flexible>> flexible;
   std::vector<Place> places;
 
+  /// Adds a flexible body with this placement, or the body `solid`.
+  void add(bool bends, Placement const& placement, unsigned seed, Rigid const& solid) {
+    Bar placed = bar;
+    placed.placement = placement;
+    if (bends)
+      flexible.push_back(model.add(bent<Flexible>(placed, seed)));
+    else
+      rigid.push_back(model.add(solid));
+  }
   /// A marker at a point of the body; along the bar if the body is flexible.
   template <class F>
   void at(std::size_t i, Vec3 const& u, F&& f) {
@@ -109,14 +118,10 @@ struct InSpace : Mixed<Policy, Rigid<>, Flexible, Revolute, Prismatic, Spherical
         *this, seed, false,
         [seed](auto& m, bool bends, Placement const& placement, Draws& draw) {
           double const mass = draw.number(0.5, 3.0);
-          Bar placed = bar;
-          placed.placement = placement;
-          if (bends)
-            m.flexible.push_back(m.model.add(bent<Flexible>(placed, seed)));
-          else
-            m.rigid.push_back(m.model.add(Rigid<>({.mass = mass,
-                                                   .inertia = Vec3(0.02 * mass, 0.03 * mass, 0.04 * mass).asDiagonal(),
-                                                   .placement = placement})));
+          m.add(bends, placement, seed,
+                Rigid<>({.mass = mass,
+                         .inertia = Vec3(0.02 * mass, 0.03 * mass, 0.04 * mass).asDiagonal(),
+                         .placement = placement}));
         },
         [](auto& m, int geometry, Vec3 const& axis, auto const& a, auto const& b) {
           if (geometry == 0) m.model.connect(Joint<Revolute, Policy>{{.axis = axis}, {}}, a, b);
@@ -136,12 +141,7 @@ struct InPlane : Mixed<Policy, planar::Rigid, Flexible, planar::Revolute, planar
         *this, seed, true,
         [seed](auto& m, bool bends, Placement const& placement, Draws& draw) {
           double const mass = draw.number(0.5, 3.0);
-          Bar placed = bar;
-          placed.placement = placement;
-          if (bends)
-            m.flexible.push_back(m.model.add(bent<Flexible>(placed, seed)));
-          else
-            m.rigid.push_back(m.model.add(planar::Rigid(mass, 0.03 * mass, placement)));
+          m.add(bends, placement, seed, planar::Rigid(mass, 0.03 * mass, placement));
         },
         [](auto& m, int geometry, Vec3 const&, auto const& a, auto const& b) {
           if (geometry < 3) m.model.connect(Joint<planar::Revolute, Policy>{}, a, b);
