@@ -87,6 +87,23 @@ TEST(PlanarSe3Beam, ForceIsThatOfTheBeamInSpace) {
   EXPECT_NEAR(flat.strain_energy(0, view(q)), beam.strain_energy(0, view(in_space)), 1e-12);
 }
 
+// g = (φ/2)/sin(φ/2), differentiated twice, on both sides of the angles at which `Growth` changes its formula.
+TEST(PlanarSe3Beam, FactorOfTheChordHasItsDerivatives) {
+  for (double const phi : {0.1, 0.199, 0.201, 1.0, 1.99, 2.01, 3.0, -3.0, 5.0}) {
+    planar::CircularArc::Growth<double> const by(phi);
+    double const s = std::sin(0.5 * phi), c = std::cos(0.5 * phi) / s;
+    EXPECT_NEAR(by.g, 0.5 * phi / s, 1e-13) << phi;
+    EXPECT_NEAR(by.dg, (0.5 - 0.25 * phi * c) / s, 1e-13) << phi;
+    EXPECT_NEAR(by.ddg, (0.125 * phi + (0.25 * phi * c - 0.5) * c) / s, 1e-11) << phi;
+    SimdVector<> lanes(0.1);
+    lanes.set(1, phi);
+    planar::CircularArc::Growth<SimdVector<>> const two(lanes);
+    EXPECT_NEAR(two.g[1], by.g, 1e-15) << phi;
+    EXPECT_NEAR(two.ddg[1], by.ddg, 1e-13) << phi;
+    EXPECT_NEAR(two.dg[0], planar::CircularArc::Growth<double>(0.1).dg, 1e-16) << phi;
+  }
+}
+
 TEST(PlanarSe3Beam, NaturallyCurvedArcIsFreeOfStress) {
   auto const curve = [](double s) {
     return Placement::planar(std::sin(2.0 * s) / 2.0, (1.0 - std::cos(2.0 * s)) / 2.0, 2.0 * s);

@@ -22,13 +22,11 @@ struct CircularArc : SimoVuQuoc {
     require_positive(c.GA, "planar::Se3Beam: the shear stiffness GA of the bar");
   }
 
-  /// Function g of φ and its derivatives. From φ = 2 rad on, with s = sin(φ/2) and c = cot(φ/2),
-  ///   g′ = (1 − φ c/2)/(2s),  g″ = (φ/4 + (φ c/2 − 1) c)/(2s).
+  /// Function g of φ and its derivatives.
   template <class T>
   struct Growth {
     T g, dg, ddg;                    ///< g without unit, g′ [1/rad], g″ [1/rad²]
     explicit Growth(T const& phi) {  ///< at the angle φ [rad]
-      using std::cos, std::sin;
       T const x = phi * phi;
       if constexpr (!requires { value_of(x); }) {  // SIMD vector
         bool small = true;
@@ -40,13 +38,10 @@ struct CircularArc : SimoVuQuoc {
           dg.set(i, one.dg);
           ddg.set(i, one.ddg);
         }
-      } else if (value_of(x) < 4.0) {
-        set(phi, detail::polynomial_below_4<T>(detail::inverse_sine_series, x));
+      } else if (value_of(x) < 0.04) {
+        set(phi, detail::polynomial<8, T>(detail::inverse_sine_series, x));
       } else {
-        T const s = sin(0.5 * phi), c = cos(0.5 * phi) / s;
-        g = 0.5 * phi / s;
-        dg = (0.5 - 0.25 * phi * c) / s;
-        ddg = (0.125 * phi + (0.25 * phi * c - 0.5) * c) / s;
+        set(phi, large(phi));
       }
     }
 
@@ -56,6 +51,15 @@ struct CircularArc : SimoVuQuoc {
       g = by_x[0];
       dg = 2.0 * phi * by_x[1];
       ddg = 2.0 * by_x[1] + 8.0 * phi * phi * by_x[2];
+    }
+    /// (g, dg/dx, ½ d²g/dx²) at x = φ² ≥ 0.04. From φ = 2 rad on, with s = sin(φ/2), c = cot(φ/2) and h = φ c/2:
+    ///   dg/dx = (1 − h)/(4 φ s),  d²g/dx² = (φ²/4 + (2 h + 1)(h − 1))/(8 φ³ s).
+    [[gnu::noinline]] static std::array<T, 3> large(T phi) {
+      using std::cos, std::sin;
+      T const x = phi * phi;
+      if (value_of(x) < 4.0) return detail::polynomial<20, T>(detail::inverse_sine_series, x);
+      T const s = phi * sin(0.5 * phi), h = 0.5 * x * cos(0.5 * phi) / s;
+      return {0.5 * x / s, (0.25 - 0.25 * h) / s, (0.25 * x + (2.0 * h + 1.0) * (h - 1.0)) / (16.0 * x * s)};
     }
   };
 
@@ -107,6 +111,19 @@ struct CircularArc : SimoVuQuoc {
       add(2, 4, by.dg * torque);
       h(2, 2) -= by.g * work;
       h(4, 4) += by.ddg * work;
+    }
+    /// Rate of B for the rates `pd` of the parameters.
+    template <KernelScalar T>
+    static void slope_rate(Vec<T, 5> const& p, Vec<T, 5> const& pd, Mat<T, 3, 5>& rate) {
+      using std::cos, std::sin;
+      Growth<T> const by(p[4]);
+      T const c = cos(p[2]), s = sin(p[2]), stretch = c * p[0] + s * p[1], slide = c * p[1] - s * p[0];
+      T const stretching = c * pd[0] + s * pd[1] + slide * pd[2], sliding = c * pd[1] - s * pd[0] - stretch * pd[2];
+      T const dg = by.dg * pd[4], ddg = by.ddg * pd[4], turning = by.g * pd[2];
+      T const along = dg * c - turning * s, across = dg * s + turning * c;
+      rate << along, across, dg * slide + by.g * sliding, T(0), ddg * stretch + by.dg * stretching,  //
+          -across, along, -(dg * stretch + by.g * stretching), T(0), ddg * slide + by.dg * sliding,  //
+          T(0), T(0), T(0), T(0), T(0);
     }
   };
   using Groups = std::tuple<Section>;  ///< strain laws of the beam

@@ -246,17 +246,22 @@ class StrainGroup : public StrainPoints<Law, coupled> {
   template <class T>
   void add_damping_gradient(int g, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // rows ck H_j ṗ + cd B_j
-    for (int j = 0; j < m; ++j) {
-      Mat<T, np, np> second;
-      Vec<T, m> only;
-      for (int c = 0; c < np; ++c)
-        for (int r = 0; r < np; ++r) second(r, c) = T(0.0);
-      for (int i = 0; i < m; ++i) only[i] = T(i == j ? ck : 0.0);
-      Law::template add_hessian<T>(at.p, only, second);
-      for (int c = 0; c < np; ++c) {
-        T sum = at.b(j, c) * cd;
-        for (int q = 0; q < np; ++q) sum += second(c, q) * at.pd[q];
-        change(j, c) = sum;
+    if constexpr (HasSlopeRate<Law>) {
+      Law::template slope_rate<T>(at.p, at.pd, change);
+      for (int k = 0; k < m * np; ++k) change.data()[k] = at.b.data()[k] * cd + change.data()[k] * ck;
+    } else {
+      for (int j = 0; j < m; ++j) {
+        Mat<T, np, np> second;
+        Vec<T, m> only;
+        for (int c = 0; c < np; ++c)
+          for (int r = 0; r < np; ++r) second(r, c) = T(0.0);
+        for (int i = 0; i < m; ++i) only[i] = T(i == j ? ck : 0.0);
+        Law::template add_hessian<T>(at.p, only, second);
+        for (int c = 0; c < np; ++c) {
+          T sum = at.b(j, c) * cd;
+          for (int q = 0; q < np; ++q) sum += second(c, q) * at.pd[q];
+          change(j, c) = sum;
+        }
       }
     }
     if constexpr (HasObjectiveRate<Law>) {

@@ -50,6 +50,12 @@ concept HasObjectiveRate = requires(Vec<double, L::strains>& e, Mat<double, L::s
   L::template objective_rate_gradients<double>(e, e, m, m);
 };
 
+/// Law with the rate Ḃ of B, whose rows are H_i ṗ.
+template <class L>
+concept HasSlopeRate = requires(Vec<double, L::parameters> const p, Mat<double, L::strains, L::parameters>& b) {
+  L::template slope_rate<double>(p, p, b);
+};
+
 /// Law of a strain vector that rotates with the body, with equal stiffness for all components. `square` returns the
 /// square of the vector, computed from scalar products of the parameters.
 template <class L>
