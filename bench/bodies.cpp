@@ -162,6 +162,8 @@ int main(int argc, char** argv) {
   add("planar::AncfCable<>", planar::AncfCable<>::from(bar(), n));
   add("planar::Lrvf", planar::Lrvf::from(bar(), n));
   add("planar::Se3Beam", planar::Se3Beam::from(bar(), n));
+  add("planar::Lrvf/damped", planar::Lrvf::from(damped_bar(), n));
+  add("planar::Se3Beam/damped", planar::Se3Beam::from(damped_bar(), n));
   add("planar::Ffr/nodal_coordinates:24", planar::Ffr::from(bar(), 8));
   return registered::run(argc, argv);
 }

@@ -76,6 +76,7 @@ Count each_policy() {
 TEST(SwapsOfTheSliderCrank, EachPolicy) {
   EXPECT_EQ(each_policy<planar::Rigid>(), (Count{7, 1}));
   EXPECT_EQ(each_policy<planar::AncfCable<>>(), (Count{5, 3}));
+  EXPECT_EQ(each_policy<planar::Se3Beam>(), (Count{5, 3}));
 }
 
 TEST(SwapsOfTheSliderCrank, EachIntegrator) {

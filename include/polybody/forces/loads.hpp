@@ -84,8 +84,9 @@ struct PointMoment {
 
 /// Range of a bar, measured from its first end and divided into equal pieces.
 struct BarRange {
-  Required<double> from, to;  ///< start and end of the range [m]
-  Required<Index> pieces;     ///< number of equal pieces, at least 1, with two point forces each
+  Required<double> from;   ///< start of the range [m]
+  Required<double> to;     ///< end of the range [m]
+  Required<Index> pieces;  ///< number of equal pieces, at least 1, with two point forces each
 };
 
 /// Applies the distributed force `per_length` [N/m], a dead or follower load, to a range of a bar as two point forces

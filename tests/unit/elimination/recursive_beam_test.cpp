@@ -21,6 +21,7 @@ TEST(RecursiveBeams, TreesInSpaceAccelerateAsWithMultipliers) {
 }
 TEST(RecursiveBeams, TreesInThePlaneAccelerateAsWithMultipliers) {
   expect_as_multipliers<InPlane, planar::Lrvf, JointCoordinates>("Lrvf in the plane");
+  expect_as_multipliers<InPlane, planar::Se3Beam, JointCoordinates>("Se3Beam in the plane");
 }
 
 /// Beam on a pin of the ground with a rigid body on a ball at its tip. It begins with a spin of 15 rad/s about the pin,
