@@ -11,23 +11,6 @@ FormulationMesh BodyOnPolicy::mesh_of(Index elements, Index modes) const {
   return mesh;
 }
 
-void add_selection(CommandLine& line, Selection& s, std::vector<std::string> const& bodies,
-                   std::vector<std::string> const& integrators, SelectionHelp const& help) {
-  line.one_of("--body", &s.bodies, bodies, help.body);
-  line.one_of("--policy", &s.policies, all_policies, help.policy);
-  line.one_of("--integrator", &s.integrators, integrators, help.integrator);
-  line.flag("--list", &s.list, "print the table of the combinations of --body, --policy and --integrator");
-  std::string const at_equal_error = "for the comparison at equal error: ";
-  line.positive("--meshes", &s.meshes, at_equal_error + "numbers of elements, ascending");
-  line.positive("--modes", &s.modes, at_equal_error + "numbers of modes" + help.modes);
-  line.positive("--steps", &s.steps, at_equal_error + "steps, descending [s]" + help.steps);
-  line.positive(
-      "--tolerances", &s.tolerances,
-      at_equal_error + "relative tolerances of integrators with step size control, descending" + help.tolerances);
-  line.positive("--error", &s.errors,
-                at_equal_error + "wanted errors, relative to the span of the output" + help.errors);
-}
-
 bool is_among(std::string const& name, std::vector<std::string> const& chosen) {
   return std::find(chosen.begin(), chosen.end(), name) != chosen.end();
 }

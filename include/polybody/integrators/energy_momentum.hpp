@@ -238,7 +238,8 @@ struct ConservingStep {
 
 /// Energy–momentum method of order two [Simo & Tarnow 1992; Gonzalez 1996], `ConservingStep` with χ = 0. It conserves
 /// energy, and is therefore stable, for every h at which Newton's method converges. High modes are not damped. The
-/// tolerance of Newton's method determines the errors of energy and momenta.
+/// tolerance of Newton's method determines the errors of energy and momenta. If angles are coordinates, as in the
+/// plane, the error of the angular momentum has order two.
 struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;

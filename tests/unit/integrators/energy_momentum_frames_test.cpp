@@ -165,6 +165,40 @@ TYPED_TEST(EnergyMomentumOfRods, JointsOfAxesKeepEnergyAndMomenta) {
   expect_invariants(drift_of(flock.model, flock.x, EnergyMomentum{}, 0.005, 10000));
 }
 
+/// Two rods and two bodies in free flight: a universal joint, a prismatic joint, and a weld by penalties of axes.
+template <class B>
+struct Row {
+  using Cross = Joint<Universal, Constraint>;
+  using Slide = Joint<Prismatic, Constraint>;
+  using Soft = Joint<Weld, PenaltyPerEquation<6>>;
+  Model<Bodies<B, Rigid<>>, Joints<Cross, Slide, Soft>> model;
+  State x;
+  Row() {
+    Bar second_rod = rod();
+    second_rod.placement.origin = {1.4, 0, 0};
+    auto const first = model.add(B::from(rod(), 3), "first"), second = model.add(B::from(second_rod, 3), "second");
+    auto const block = model.add(
+                   Rigid<>({.mass = 0.4, .inertia = 0.01 * inertia, .placement = {.origin = {1.1, 0, 0}}}), "block"),
+               slider = model.add(
+                   Rigid<>({.mass = 0.3, .inertia = 0.01 * inertia, .placement = {.origin = {1.3, 0.1, 0}}}), "slider");
+    model.connect(Cross{{.first = {0, 1, 0}, .second = {0, 0, 1}}, {}}, first.at(1.0), block.at(Vec3(-0.1, 0, 0)),
+                  "cross");
+    model.connect(Slide{{.axis = {0, 1, 0}}, {}}, block.at(Vec3(0.1, 0.1, 0)), slider.at(Vec3(-0.1, 0, 0)), "slide");
+    Vec6 stiffness;
+    stiffness << 1e4, 2e4, 1e4, 50.0, 80.0, 60.0;
+    model.connect(Soft{{}, {.stiffness = stiffness, .damping = Vec6(Vec6::Zero())}}, slider.at(Vec3(0.1, -0.1, 0)),
+                  second.at(0.0), "weld");
+    x = model.reference_state();
+    for (auto const& part : {first, second}) model.set_velocity(x, part, Vec3(1, 0, 0.5), Vec3(0.5, 1.0, 3.0));
+    for (auto const& part : {block, slider}) model.set_velocity(x, part, Vec3(1, 0, 0.5), Vec3(0.5, 1.0, 3.0));
+  }
+};
+
+TYPED_TEST(EnergyMomentumOfRods, UniversalPrismaticAndPenaltiesOfAxesKeepEnergyAndMomenta) {
+  Row<TypeParam> row;
+  expect_invariants(drift_of(row.model, row.x, EnergyMomentum{}, 0.002, 10000));
+}
+
 // The damping of the rods reduces the energy in every step; the momenta are constant.
 TYPED_TEST(EnergyMomentumOfRods, DampersOnlyTakeEnergy) {
   Flock<TypeParam> flock(5e-3, true);
