@@ -233,8 +233,8 @@ TYPED_TEST(EnergyMomentumOfRods, RigidMotionOfTheStartMovesTheResult) {
   EXPECT_LT((turn * end(false) + Vec3(3, -2, 5) - end(true)).norm(), 1e-9);
 }
 
-// The same with all joints, a spring and damped rods. The bushing's components refer to axes that the library derives
-// from the joint axis; the rotation of the start also moves these axes.
+// Runs with all joints, a spring and damped rods are equal too. The bushing's components refer to axes that the
+// library derives from the joint axis; the rotation of the start also moves these axes.
 TYPED_TEST(EnergyMomentumOfRods, RigidMotionOfTheStartMovesJointedModels) {
   auto const axes_of_pad = [](Vec3 const& axis) { return constraint_functions::triad_about(axis, "pad"); };
   Placement const moved{.origin = {3, -2, 5},
