@@ -279,6 +279,39 @@ def eq_8_9_9_21_9_22():
     same(impact(lambda d, rate: k * max(d, 0) ** 1.5 * (1 + chi * rate), v, 1e-4), departure(chi * v), 1e-6)
 
 
+def eq_8_33():
+    p, eps, length = 0.15, 0.03, 0.08
+    share = lambda along: (lambda x: x * x * (3 - 2 * x))((p / 2 + eps - abs(along)) / (2 * eps))
+    for along in length, -length:
+        x, side = (p / 2 + eps - abs(along)) / (2 * eps), math.copysign(1, along)
+        same(slope(lambda r: share(along - r)), 3 * side / eps * x * (1 - x), 1e-6)
+    for along in 0.06, 0.09:  # this link and the next one
+        same(share(along) + share(along - p), 1, 1e-12)
+
+
+def eq_8_36_8_37_8_38_8_39():
+    n, p, rp, rv, phi, rt = 11, 0.15, 0.02, 0.03, 0.9, 0.275
+    pitch_radius = p / (2 * sin(pi / n))
+    rc = pitch_radius + rv - rp
+    f, t, normal = [rc - rv * cos(phi), rv * sin(phi)], [sin(phi), cos(phi)], [cos(phi), -sin(phi)]
+    b = dot(f, t)
+    k = add(f, t, sqrt(b * b - dot(f, f) + rt * rt) - b)
+    same(norm(k), rt, 1e-12)
+    arc = lambda x, y: math.hypot(rc - x, y) - (rv - rp)
+    flank = lambda x, y: (rc - x) * cos(phi) + y * sin(phi) - (rv - rp)
+    corner = lambda x, y: rp - norm(add([x, y], k, -1))
+    tip = lambda x, y: rt + rp - math.hypot(x, y)
+    same(arc(pitch_radius, 0), 0, 1e-12, "a pin at the bottom lies on the pitch circle:")
+    at_arc, at_corner = [rc - 0.012 * cos(phi), 0.012 * sin(phi)], add(k, normal, 0.8 * rp)
+    for first, second, place in (arc, flank, at_arc), (flank, corner, at_corner), (corner, tip, times(1.05, k)):
+        same(first(*place), second(*place), 1e-12)
+        for axis in (1, 0), (0, 1):
+            along = lambda depth: slope(lambda e: depth(*add(place, axis, e)))
+            same(along(first), along(second), 1e-6)
+    for axis, component in zip(((1, 0), (0, 1)), normal):
+        same(slope(lambda e: flank(*add(at_arc, axis, e))), -component, 1e-8)
+
+
 def eq_9_23():
     k, c, v, onset = 400.0, 2.0, 0.02, 0.05
     e = impact(lambda d, rate: k * d + c * d / onset * rate, v, 1e-4)

@@ -15,6 +15,7 @@
 /// equations of these models are differenced at fixed unknowns, as in `sensitivities`. Parameters that affect no common
 /// equation share these differences (`Parameter::affects`). All other costs of a step are independent of the number of
 /// parameters. Each step begins with a new factorisation, so that repeated steps are bitwise identical.
+/// Theory: Eqs. 8.23, 8.24.
 
 #include <span>
 

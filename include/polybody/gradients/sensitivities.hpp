@@ -12,6 +12,7 @@
 /// from state to state: a start, an event action, and the start correction after a change of the step length. Steps are
 /// differentiated exactly (`AlphaLinearisedStep`), also with respect to their lengths, since breakpoints and events end
 /// steps at times that depend on the parameters.
+/// Theory: Eqs. 8.17 to 8.19.
 
 #include <polybody/gradients/forward_sensitivities.hpp>
 #include <polybody/gradients/perturbed_models.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Axes of a track link for the evaluation of contacts.
+/// Theory: Eq. 8.30.
 
 #include <polybody/kinematics/frame.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of a track link with the ground.
+/// Theory: Eq. 8.31.
 
 #include <vector>
 

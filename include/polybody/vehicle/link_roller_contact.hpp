@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of a track link with a road wheel, idler or roller.
+/// Theory: Eqs. 8.32 to 8.35.
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
 /// Contact of a track's pins with the teeth of its sprocket.
+/// Theory: Eqs. 8.36 to 8.39.
 
 #include <numbers>
 #include <optional>

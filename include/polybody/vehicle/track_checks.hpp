@@ -2,6 +2,7 @@
 /// \file
 /// Checks of a track during a run: engagement of the pins with their sprocket, time step for the teeth, and distance of
 /// a point from a path.
+/// Theory: Eqs. 8.45 to 8.47.
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 /// circle. The root of
 ///   track_length(layout, travel) = links
 /// is the travel at which the loop is closed.
+/// Theory: Eqs. 8.42 to 8.44.
 
 #include <algorithm>
 #include <cmath>

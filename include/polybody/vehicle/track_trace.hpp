@@ -7,6 +7,7 @@
 /// link turns inwards at its pin as far as the circles permit. It lies on a tangent of the next circle of radius R +
 /// h, so that its face touches the rim, or on the line to the first seat of the sprocket. All links of a straight run
 /// lie on one line. The chain is similar to a taut string around the same circles, but its arcs are polygons.
+/// Theory: Eqs. 8.40, 8.41.
 
 #include <algorithm>
 #include <cmath>
