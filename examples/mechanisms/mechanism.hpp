@@ -38,8 +38,16 @@ class Picture {
     if (t >= 0.0) figure_.texts.push_back({c.x[at], c.y[at], polybody::number(t, 3) + " s"});
     figure_.curves.push_back(std::move(c));
   }
+  // Adds the area inside a closed line, translucent, with its outline.
+  void area(std::vector<polybody::Vec3> const& points, int colour) {
+    line(points, colour);
+    figure_.curves.push_back(figure_.curves.back());
+    figure_.curves.back().style = "filled";
+  }
+  // Adds a text at the right of a point.
+  void text(polybody::Vec3 const& p, std::string words) { figure_.texts.push_back({p[u_], p[v_], std::move(words)}); }
   // Writes out/mechanisms/NAME.png, with its data and script. A flat picture gets a height of a third of its width, and
-  // a tall one a width of its height. A time that would cover an earlier one is omitted.
+  // a tall one a width of its height. A text that would cover an earlier one is omitted.
   void write(std::string const& name) {
     double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     for (polybody::Curve const& c : figure_.curves)
