@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-FIGURE = '<figure><a href="{0}"><img loading="lazy" src="{0}" alt="{1}"/></a><figcaption>{1}</figcaption></figure>'
+FIGURE = '<figure><a href="{0}"><img loading="lazy" src="{0}" alt="{1}"/></a><figcaption>{1}{2}</figcaption></figure>'
 FILM = '<figure class="film"><a href="{0}">&#9654; Film</a>. {1}</figure>'
 MECHANISM = re.compile(r"^## (.*)\n\n(.*)\nKnown number: (.*)\n\n!\[.*\]\(.*/(\w+\.png)\)", re.M)
 
@@ -24,10 +24,11 @@ LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 
 
 def show(pictures):
-    """The pictures and films of a section, pairs of file and sentence."""
+    """The pictures and films of a section: file, sentence and, for some, the command that writes the picture."""
     print('\\htmlonly\n<div class="gallery">')
-    for file, sentence in pictures:
-        print((FILM if file.endswith(".html") else FIGURE).format(html.escape(file), html.escape(sentence)))
+    for file, sentence, *command in pictures:
+        code = "".join(f"<br/><code>{html.escape(line)}</code>" for line in command)
+        print((FILM if file.endswith(".html") else FIGURE).format(html.escape(file), html.escape(sentence), code))
     print("</div>\n\\endhtmlonly\n")
 
 
@@ -52,7 +53,9 @@ def examples(lines):
 def mechanisms():
     page = (ROOT / "docs/mechanisms.md").read_text(encoding="utf-8")
     print('## Mechanisms\n\nThe page \\ref page_mechanisms "Small mechanisms" has their programs.\n')
-    show([(file, f"{name}. {sentence} Known number: {known}") for name, sentence, known, file in MECHANISM.findall(page)])
+    print("```sh\ncmake --preset release && cmake --build build/release --target mechanisms   # builds all of them\n```\n")
+    show([(file, f"{name}. {sentence} Known number: {known}", f"build/release/examples/mechanism_{Path(file).stem}")
+          for name, sentence, known, file in MECHANISM.findall(page)])
 
 
 def atlas(reports):
