@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 GENERATED = re.compile(r"docs/(notes|validated)/.*|docs/references\.md")  # or notes
-ONE_NUMBER = re.compile(r"docs/(performance|reliability|chapter2|tracked_vehicle|peers|chapter3/runs)\.md")
+ONE_NUMBER = re.compile(r"docs/(performance|reliability|chapter2|tracked_vehicle|track_stress|validation|peers|chapter3/runs)\.md")
 MISSING = re.compile(r"\bCASES\d*\.md\b|\bCASES\d\b|\bM113\.md\b")
 LONGEST_MECHANISM = 60  # lines
 
