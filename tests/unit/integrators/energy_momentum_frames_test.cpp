@@ -185,7 +185,7 @@ struct Row {
                   "cross");
     model.connect(Slide{{.axis = {0, 1, 0}}, {}}, block.at(Vec3(0.1, 0.1, 0)), slider.at(Vec3(-0.1, 0, 0)), "slide");
     Vec6 stiffness;
-    stiffness << 1e4, 2e4, 1e4, 50.0, 80.0, 60.0;
+    stiffness << 1e4, 1e4, 1e4, 50.0, 80.0, 60.0;  // equal for the components in world axes
     model.connect(Soft{{}, {.stiffness = stiffness, .damping = Vec6(Vec6::Zero())}}, slider.at(Vec3(0.1, -0.1, 0)),
                   second.at(0.0), "weld");
     x = model.reference_state();
